@@ -1,0 +1,1 @@
+//! Collapse, fits, resampling: tables in, curves with uncertainties out.

@@ -1,0 +1,11 @@
+//! The physics: `compile(scene)` gives a [`Simulation`]. No job, HTTP, SQL, async or wall clock in here.
+
+mod compile;
+mod error;
+mod explain;
+mod simulation;
+
+pub use compile::{compile, restore};
+pub use error::SimError;
+pub use explain::{Explanation, Skip, explain};
+pub use simulation::{KernelChoice, Options, Progress, Simulation};
