@@ -1,6 +1,7 @@
 //! The physics: `compile(scene)` gives a [`Simulation`]. No job, HTTP, SQL, async or wall clock in here.
 
 mod compile;
+pub mod dem;
 mod error;
 mod explain;
 mod simulation;

@@ -1,0 +1,10 @@
+//! The discrete element method: particles, contact laws, walls, one step as a list of phases.
+//!
+//! Everything outside this engine talks to [`Dynamics`] and reads a [`View`]; the memory layout of particles and
+//! contacts is known to [`crate::state`] alone.
+
+mod dynamics;
+mod view;
+
+pub use dynamics::{Counters, Drag, Dynamics, Fault, InitialState, Motion, SphereParameters};
+pub use view::{Energies, PairContact, View, WallContact, WallView};
