@@ -4,15 +4,24 @@
 //! its field path ([`Problems`]), and reduced to dimensionless groups ([`Reduced`]). The hash of the canonical
 //! reduced scene and the physics version is the [`SceneKey`]: two scenes with equal keys are the same run.
 
+mod description;
 mod key;
 mod model;
+mod number;
+mod parse;
 mod problem;
+mod quantity;
 mod reduced;
 mod scene;
 pub mod spheres;
+pub mod table;
 
+pub use description::Description;
 pub use key::SceneKey;
 pub use model::Model;
+pub use number::round12;
+pub use parse::parse_json;
 pub use problem::{Problem, Problems};
+pub use quantity::{Quantity, QuantityInfo};
 pub use reduced::Reduced;
 pub use scene::Scene;

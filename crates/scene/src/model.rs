@@ -1,6 +1,12 @@
 //! The engines a scene can name.
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use crate::description::Description;
+use crate::spheres::Spheres;
+use crate::table::{Key, object_schema};
+use crate::{Quantity, QuantityInfo};
 
 /// The engine that runs a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
@@ -28,11 +34,64 @@ impl Model {
         }
     }
 
+    /// The model of a name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|model| model.name() == name)
+    }
+
+    /// What the model describes, in one sentence.
+    #[must_use]
+    pub fn summary(self) -> &'static str {
+        match self {
+            Self::CohesiveSpheres => {
+                "Cohesive elastic-frictional spheres in 3D, compacted dynamically from a dilute agitated state by six \
+                 servo-controlled rigid walls."
+            }
+            Self::CohesiveDiscs => {
+                "Cohesive elastic-frictional discs in a periodic cell, consolidated quasi-statically."
+            }
+            Self::PlasticDiscs => {
+                "Elastic-plastic discs that deform until they fill the space, by implicit MPM with contact dynamics."
+            }
+        }
+    }
+
     /// The version of the physics: part of every scene key, raised whenever results change.
     #[must_use]
     pub fn physics_version(self) -> u32 {
         match self {
             Self::CohesiveSpheres | Self::CohesiveDiscs | Self::PlasticDiscs => 1,
         }
+    }
+
+    /// The keys of its scenes; none while the engine is not part of this build.
+    #[must_use]
+    pub fn keys(self) -> &'static [Key] {
+        match self {
+            Self::CohesiveSpheres => Spheres::KEYS,
+            Self::CohesiveDiscs | Self::PlasticDiscs => &[],
+        }
+    }
+
+    /// The key of a name.
+    #[must_use]
+    pub fn key(self, name: &str) -> Option<&'static Key> {
+        self.keys().iter().find(|key| key.name == name)
+    }
+
+    /// The derived quantities of its scenes.
+    #[must_use]
+    pub fn quantities(self) -> Vec<QuantityInfo> {
+        match self {
+            Self::CohesiveSpheres => Spheres::QUANTITIES.iter().map(Quantity::info).collect(),
+            Self::CohesiveDiscs | Self::PlasticDiscs => Vec::new(),
+        }
+    }
+
+    /// The JSON schema of its scenes (draft 2020-12).
+    #[must_use]
+    pub fn schema(self) -> Value {
+        object_schema(&[("model", self.name())], self.keys())
     }
 }

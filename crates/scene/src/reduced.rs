@@ -1,9 +1,10 @@
 //! The dimensionless groups of a scene: what the simulation runs.
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 
 use crate::spheres::ReducedSpheres;
-use crate::{Model, SceneKey};
+use crate::{Model, Problem, Problems, SceneKey};
 
 /// A reduced scene. Its numbers are rounded to 12 significant digits, so that equal groups written in different
 /// units are equal bits.
@@ -21,6 +22,29 @@ impl Reduced {
         match self {
             Self::CohesiveSpheres(_) => Model::CohesiveSpheres,
         }
+    }
+
+    /// Reads a reduced scene, as written by [`Reduced::to_json`]. It comes from a coordinator that has validated the
+    /// scene behind it; who runs it compares [`Reduced::key`] with the key that came along.
+    ///
+    /// # Errors
+    /// [`Problems`] when a field is missing, unknown or of another type.
+    pub fn from_json(value: &Value) -> Result<Self, Problems> {
+        serde_json::from_value(value.clone()).map_err(|error| {
+            Problem::new(
+                "reduced",
+                value,
+                format!("is not a reduced scene of this version: {error}"),
+                "use the same version for coordinator and worker",
+            )
+            .into()
+        })
+    }
+
+    /// The reduced scene as JSON.
+    #[must_use]
+    pub fn to_json(&self) -> Value {
+        serde_json::to_value(self).expect("a reduced scene is plain JSON")
     }
 
     /// The identity of the run: hash of the canonical form (RFC 8785) with the physics version.

@@ -1,6 +1,12 @@
 //! Model `cohesive_spheres`: scene in SI units and its dimensionless groups.
 
+mod keys;
+mod quantities;
+mod reduce;
+
 use serde::{Deserialize, Serialize};
+
+use crate::round12;
 
 /// Which mass enters the normal dashpot −2 α_n √(k_n m) δ̇_n.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -143,42 +149,20 @@ pub struct ReducedSpheres {
     pub approach: Approach,
 }
 
-impl Spheres {
-    /// The dimensionless groups: p/σe, σc/σe, v_k = agitation · 0.158 √(p0/σe), … .
-    #[must_use]
-    pub fn reduce(&self) -> ReducedSpheres {
-        /// Pressure that sets the agitation, 0.01 MPa [Pa].
-        const P0: f64 = 1.0e4;
-        /// Wall mass is given for the paper's number of spheres.
-        const PAPER_N: f64 = 17_657.0;
-        #[expect(clippy::cast_precision_loss, reason = "particle numbers stay far below 2^53")]
-        let area_ratio = (self.n as f64 / PAPER_N).powf(2.0 / 3.0);
-        let wall_mass = if self.scale_wall_mass { self.mw * area_ratio } else { self.mw };
-        ReducedSpheres {
-            n: self.n,
-            seed: self.seed,
-            pressure: round12(self.p / self.sigma_e),
-            adhesion: round12(self.sigma_c / self.sigma_e),
-            alpha_n: round12(self.alpha_n),
-            mu: round12(self.mu),
-            kt_over_kn: round12(self.kt_over_kn),
-            wall_mass: round12(wall_mass),
-            ei: round12(self.ei),
-            mu_wall: round12(self.mu_wall),
-            wall_adhesion: round12(self.wall_adhesion),
-            moving_walls: self.moving_walls,
-            agitation_speed: round12(self.agitation * 0.158 * (P0 / self.sigma_e).sqrt()),
-            damping_mass: self.damping_mass,
-            clamp_viscous: self.clamp_viscous,
-            dt: self.dt.map(round12),
-            max_steps: self.max_steps,
-            stop: self.stop,
-            approach: self.approach,
+impl Stop {
+    /// Tolerances rounded to 12 significant digits.
+    pub(crate) fn rounded(self) -> Self {
+        match self {
+            Self::Settled { e_drift, wall_imbalance } => {
+                Self::Settled { e_drift: round12(e_drift), wall_imbalance: round12(wall_imbalance) }
+            }
+            Self::Evidence { e_drift, wall_imbalance, ke_over_eel } => Self::Evidence {
+                e_drift: round12(e_drift),
+                wall_imbalance: round12(wall_imbalance),
+                ke_over_eel: round12(ke_over_eel),
+            },
+            Self::KineticEnergy { ke_over_eel } => Self::KineticEnergy { ke_over_eel: round12(ke_over_eel) },
+            Self::Steps => Self::Steps,
         }
     }
-}
-
-/// Rounds to 12 significant decimal digits, so that equal groups reached by different arithmetic are equal bits.
-fn round12(value: f64) -> f64 {
-    format!("{value:.11e}").parse().expect("a formatted number parses")
 }
