@@ -4,6 +4,7 @@ mod compile;
 pub mod dem;
 mod error;
 mod explain;
+pub mod mpm;
 mod simulation;
 
 pub use compile::{compile, restore};

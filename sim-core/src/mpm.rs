@@ -1,0 +1,8 @@
+//! Plastic discs: material point method with contact dynamics.
+//!
+//! Nezamabadi, Ghadiri, Delenne, Radjai (2021), Comput. Part. Mech. 9, 45–52 ("the paper"; its equation numbers are
+//! kept). Plane strain; any consistent units (the engine runs with E = ρ = 1, the tests with µm, MPa, µs).
+
+pub mod constitutive;
+pub mod plane;
+pub mod real;
