@@ -33,7 +33,7 @@ pub trait Description: Clone + PartialEq + Serialize + DeserializeOwned + 'stati
     }
 }
 
-/// Reads a scene of a known model; `model` itself is left to the caller.
+/// Reads a scene of a known model, key by key; `model` and conflicts between keys are left to the caller.
 ///
 /// # Errors
 /// [`Problems`]: every one of them.
@@ -41,10 +41,8 @@ pub(crate) fn read<D: Description>(object: &Map<String, Value>) -> Result<D, Pro
     let mut problems = Vec::new();
     let settled = check_object("", D::KEYS, &["model"], object, &mut problems);
     Problems::none_or(problems)?;
-    let scene: D = serde_json::from_value(Value::Object(settled))
-        .expect("the key table and the struct have the same fields and types");
-    Problems::none_or(scene.conflicts())?;
-    Ok(scene)
+    Ok(serde_json::from_value(Value::Object(settled))
+        .expect("the key table and the struct have the same fields and types"))
 }
 
 /// Writes a scene as [`read`] takes it: absent values as `"auto"`.

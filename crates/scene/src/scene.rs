@@ -1,7 +1,7 @@
 //! A validated scene of any model, in SI units.
 
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 use crate::description::{Description, read, write};
 use crate::problem::Problem;
@@ -36,7 +36,17 @@ impl Scene {
             let remedy = "give an object: {\"model\": \"cohesive_spheres\", …}";
             return Err(Problem::new("", value, "a scene is an object", remedy).into());
         };
-        match read_model(object.get("model"))? {
+        let scene = Self::without_conflict_check(read_model(object.get("model"))?, object)?;
+        Problems::none_or(scene.conflicts())?;
+        Ok(scene)
+    }
+
+    /// Reads a scene whose keys are right one by one; [`Scene::conflicts`] is still to be asked.
+    pub(crate) fn without_conflict_check(
+        model: Model,
+        object: &Map<String, Value>,
+    ) -> Result<Self, Problems> {
+        match model {
             Model::CohesiveSpheres => read(object).map(Self::CohesiveSpheres),
             model => Err(Problem::new(
                 "model",
@@ -46,6 +56,11 @@ impl Scene {
             )
             .into()),
         }
+    }
+
+    /// What is wrong with the combination of keys, each of which is right alone.
+    pub(crate) fn conflicts(&self) -> Vec<Problem> {
+        on_description!(self, inner => inner.conflicts())
     }
 
     /// Reads and checks a scene from JSON text; names that occur twice and numbers beyond the range of doubles are

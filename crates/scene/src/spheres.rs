@@ -1,5 +1,6 @@
 //! Model `cohesive_spheres`: scene in SI units and its dimensionless groups.
 
+mod cost;
 mod keys;
 mod quantities;
 mod reduce;

@@ -7,7 +7,7 @@ mod check;
 mod document;
 mod schema;
 
-pub(crate) use check::{check_object, unknown_name};
+pub(crate) use check::{check_object, check_value, join, unknown_name};
 pub use document::document;
 pub(crate) use schema::object_schema;
 
