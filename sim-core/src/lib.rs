@@ -2,9 +2,13 @@
 
 mod compile;
 pub mod dem;
+pub mod elasticity;
 mod error;
 mod explain;
+pub mod loading;
 pub mod mpm;
+pub mod observables;
+pub mod packing;
 mod simulation;
 
 pub use compile::{compile, restore};

@@ -1,0 +1,3 @@
+//! Initial states.
+
+pub mod hard_discs;
