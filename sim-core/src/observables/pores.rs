@@ -2,13 +2,16 @@
 
 use super::structure_factor::{DiscsInCell, SolidMesh};
 
+/// A touching pair: disc and branch vector to the disc that it touches [a].
+pub type Link = (usize, [f64; 2]);
+
 /// Mean radius of gyration ξ' of the pores, each weighted by its area [a]; `None` without void.
 ///
 /// A pore is a set of void points of the mesh joined over their edges; `links` are the branch vectors (from disc
 /// `i`) of touching discs, drawn as walls so that the narrow void beside a contact does not join two pores. A pore
 /// that winds around the cell is unrolled along the walk that finds it.
 #[must_use]
-pub fn pore_gyration_radius(discs: &DiscsInCell<'_>, links: &[(usize, [f64; 2])]) -> Option<f64> {
+pub fn pore_gyration_radius(discs: &DiscsInCell<'_>, links: &[Link]) -> Option<f64> {
     let mut mesh = SolidMesh::sample(discs);
     for &(disc, branch) in links {
         mesh.draw_segment(discs.positions[disc], branch);
@@ -88,7 +91,7 @@ mod tests {
     use super::*;
 
     /// A square lattice of touching unit discs: one pore per cell of the lattice.
-    fn square_lattice(side: u32) -> (Vec<[f64; 2]>, Vec<(usize, [f64; 2])>) {
+    fn square_lattice(side: u32) -> (Vec<[f64; 2]>, Vec<Link>) {
         let mut positions = Vec::new();
         let mut links = Vec::new();
         for row in 0..side {
