@@ -85,7 +85,7 @@ pub struct Grant {
     pub reduced: serde_json::Value,
     /// Its scene key, to be checked by the worker.
     pub scene_key: String,
-    /// Newest checkpoint, if any: get it from `GET /v1/leases/{job}/checkpoint?attempt=…`.
+    /// Newest checkpoint, if any: get it from `GET /v1/leases/{job}/checkpoint?worker=…&attempt=…`.
     pub checkpoint: Option<Checkpoint>,
 }
 
@@ -99,6 +99,21 @@ pub struct Checkpoint {
     pub steps: u64,
     /// Size [bytes].
     pub bytes: u64,
+}
+
+/// `PUT /v1/leases/{job}/checkpoint?worker=…&attempt=…&steps=…`: the body is the checkpoint, as raw bytes. The same
+/// query without `steps` reads the newest one back with GET.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+#[cfg_attr(feature = "openapi", derive(utoipa::IntoParams))]
+pub struct CheckpointQuery {
+    /// Who runs the job.
+    pub worker: WorkerId,
+    /// Under which attempt.
+    pub attempt: u32,
+    /// Steps done at the checkpoint (PUT only).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub steps: Option<u64>,
 }
 
 /// `PUT /v1/leases/{job}`: the job is alive.
@@ -135,6 +150,28 @@ pub enum Directive {
     Yield,
     /// Stop at once and forget the job: nobody wants it.
     Drop,
+}
+
+/// Answer to a result.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct Accepted {
+    /// The job.
+    pub job: JobId,
+    /// BLAKE3 digest of the outcome.
+    pub digest: String,
+    /// Whether this very result was stored before.
+    pub duplicate: bool,
+}
+
+/// Answer to a failure or a release.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+pub struct Returned {
+    /// The job.
+    pub job: JobId,
+    /// Its state now: queued for another try, or set aside.
+    pub state: crate::JobState,
 }
 
 /// Answer to a heartbeat.
@@ -194,7 +231,8 @@ pub struct Failure {
     pub message: String,
 }
 
-/// `POST /v1/leases/{job}/release`: the worker gives the job back unharmed (drain, shutdown). Counts as a loss.
+/// `POST /v1/leases/{job}/release`: the worker gives the job back unharmed (drain, shutdown). Counts neither as a
+/// failure nor as a loss.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
