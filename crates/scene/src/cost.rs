@@ -29,5 +29,6 @@ impl Cost {
 pub fn cost(reduced: &Reduced) -> Cost {
     match reduced {
         Reduced::CohesiveSpheres(spheres) => spheres.cost(),
+        Reduced::CohesiveDiscs(discs) => discs.cost(),
     }
 }

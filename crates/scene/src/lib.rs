@@ -7,6 +7,7 @@
 
 mod cost;
 mod description;
+pub mod discs;
 mod key;
 mod model;
 mod number;

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 use crate::description::Description;
+use crate::discs::Discs;
 use crate::spheres::Spheres;
 use crate::table::{Key, object_schema};
 use crate::{Quantity, QuantityInfo};
@@ -70,7 +71,8 @@ impl Model {
     pub fn keys(self) -> &'static [Key] {
         match self {
             Self::CohesiveSpheres => Spheres::KEYS,
-            Self::CohesiveDiscs | Self::PlasticDiscs => &[],
+            Self::CohesiveDiscs => Discs::KEYS,
+            Self::PlasticDiscs => &[],
         }
     }
 
@@ -85,7 +87,8 @@ impl Model {
     pub fn quantities(self) -> Vec<QuantityInfo> {
         match self {
             Self::CohesiveSpheres => Spheres::QUANTITIES.iter().map(Quantity::info).collect(),
-            Self::CohesiveDiscs | Self::PlasticDiscs => Vec::new(),
+            Self::CohesiveDiscs => Discs::QUANTITIES.iter().map(Quantity::info).collect(),
+            Self::PlasticDiscs => Vec::new(),
         }
     }
 

@@ -28,6 +28,11 @@ pub const PRESETS: &[Preset] = &[
         summary: "the 291 runs of the study of cohesive dynamic compaction (2024), 17657 spheres each",
         text: include_str!("../../../examples/cohesive-study.json"),
     },
+    Preset {
+        name: "consolidation-2008",
+        summary: "the 36 samples of the study of cohesive powders under isotropic loads (2008), 1400 to 10976 discs",
+        text: include_str!("../../../examples/consolidation-2008.json"),
+    },
 ];
 
 /// Fields of a definition that an override may replace beside the keys of the model.

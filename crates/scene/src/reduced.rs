@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::discs::ReducedDiscs;
 use crate::spheres::ReducedSpheres;
 use crate::{Model, Problem, Problems, SceneKey};
 
@@ -13,6 +14,8 @@ use crate::{Model, Problem, Problems, SceneKey};
 pub enum Reduced {
     /// Cohesive spheres in units d = m = k_n = 1.
     CohesiveSpheres(ReducedSpheres),
+    /// Cohesive discs in units a = m = K_N = 1.
+    CohesiveDiscs(ReducedDiscs),
 }
 
 impl Reduced {
@@ -21,6 +24,7 @@ impl Reduced {
     pub fn model(&self) -> Model {
         match self {
             Self::CohesiveSpheres(_) => Model::CohesiveSpheres,
+            Self::CohesiveDiscs(_) => Model::CohesiveDiscs,
         }
     }
 

@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
 use crate::description::{Description, read, write};
+use crate::discs::Discs;
 use crate::problem::Problem;
 use crate::spheres::Spheres;
 use crate::table::unknown_name;
@@ -15,6 +16,8 @@ use crate::{Model, Problems, Reduced, SceneKey, parse_json};
 pub enum Scene {
     /// Cohesive spheres in 3D under servo walls.
     CohesiveSpheres(Spheres),
+    /// Cohesive discs in a periodic cell, quasi-static.
+    CohesiveDiscs(Discs),
 }
 
 /// Runs an expression on the description inside a scene, whichever model it is.
@@ -22,6 +25,7 @@ macro_rules! on_description {
     ($scene:expr, $inner:ident => $body:expr) => {
         match $scene {
             Scene::CohesiveSpheres($inner) => $body,
+            Scene::CohesiveDiscs($inner) => $body,
         }
     };
 }
@@ -48,11 +52,12 @@ impl Scene {
     ) -> Result<Self, Problems> {
         match model {
             Model::CohesiveSpheres => read(object).map(Self::CohesiveSpheres),
+            Model::CohesiveDiscs => read(object).map(Self::CohesiveDiscs),
             model => Err(Problem::new(
                 "model",
                 &Value::from(model.name()),
                 "this build has no engine for the model",
-                format!("use {}", Model::CohesiveSpheres.name()),
+                format!("use {} or {}", Model::CohesiveSpheres.name(), Model::CohesiveDiscs.name()),
             )
             .into()),
         }
@@ -83,6 +88,7 @@ impl Scene {
     pub fn model(&self) -> Model {
         match self {
             Self::CohesiveSpheres(_) => Model::CohesiveSpheres,
+            Self::CohesiveDiscs(_) => Model::CohesiveDiscs,
         }
     }
 
@@ -91,6 +97,7 @@ impl Scene {
     pub fn reduce(&self) -> Reduced {
         match self {
             Self::CohesiveSpheres(spheres) => Reduced::CohesiveSpheres(spheres.reduce()),
+            Self::CohesiveDiscs(discs) => Reduced::CohesiveDiscs(discs.reduce()),
         }
     }
 

@@ -8,7 +8,10 @@ use serde_json::{Value, json};
 
 /// A scene of each model with nothing but its required keys.
 fn smallest_scenes() -> Vec<Value> {
-    vec![json!({"model": "cohesive_spheres", "p": 1e5, "sigma_c": 3e6, "sigma_e": 1e10})]
+    vec![
+        json!({"model": "cohesive_spheres", "p": 1e5, "sigma_c": 3e6, "sigma_e": 1e10}),
+        json!({"model": "cohesive_discs"}),
+    ]
 }
 
 #[test]

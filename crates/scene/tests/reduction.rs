@@ -86,7 +86,9 @@ proptest! {
         let key = Scene::from_json(&one).unwrap().reduce();
         let rounded = Scene::from_json(&other).unwrap().reduce();
         // Groups on a rounding boundary may fall to either side: two ways differ by one unit of the 12th digit.
-        let (Reduced::CohesiveSpheres(left), Reduced::CohesiveSpheres(right)) = (&key, &rounded);
+        let (Reduced::CohesiveSpheres(left), Reduced::CohesiveSpheres(right)) = (&key, &rounded) else {
+            panic!("spheres");
+        };
         prop_assert!((left.pressure - right.pressure).abs() <= 1.1e-11 * left.pressure);
         if left.pressure == right.pressure && left.adhesion == right.adhesion {
             prop_assert_eq!(key.key(), rounded.key());

@@ -50,7 +50,9 @@ mod tests {
 
     fn spheres(p: f64) -> ReducedSpheres {
         let scene = serde_json::json!({"model": "cohesive_spheres", "p": p, "sigma_c": 1e6, "sigma_e": 1e10});
-        let crate::Reduced::CohesiveSpheres(reduced) = Scene::from_json(&scene).unwrap().reduce();
+        let crate::Reduced::CohesiveSpheres(reduced) = Scene::from_json(&scene).unwrap().reduce() else {
+            panic!("spheres");
+        };
         reduced
     }
 

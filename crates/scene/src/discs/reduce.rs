@@ -1,0 +1,146 @@
+//! Keys to the groups of `cohesive_discs`.
+
+use super::keys::KEYS;
+use super::quantities::QUANTITIES;
+use super::{Assembly, Discs, PathLeg, ReducedDiscs};
+use crate::description::Description;
+use crate::table::Key;
+use crate::{Model, Problem, Quantity, round12};
+
+/// Time step without other word: stable and accurate; above 0.15 runs fail silently [√(m/K_N)].
+const STEP: f64 = 0.1;
+
+impl Description for Discs {
+    type Reduced = ReducedDiscs;
+    const MODEL: Model = Model::CohesiveDiscs;
+    const KEYS: &'static [Key] = KEYS;
+    const QUANTITIES: &'static [Quantity<Self>] = QUANTITIES;
+
+    fn conflicts(&self) -> Vec<Problem> {
+        super::keys::conflicts(self)
+    }
+
+    fn reduce(&self) -> ReducedDiscs {
+        let cohesive = self.assembly != Assembly::Cohesionless;
+        let friction = self.mu > 0.0;
+        let rolling = friction && self.mu_r > 0.0;
+        let with = |wanted: bool, value: f64| if wanted { round12(value) } else { 0.0 };
+        let legs = self.path.clone().unwrap_or_else(|| paper_path(cohesive, self.first_pressure()));
+        ReducedDiscs {
+            n: self.n,
+            seed: self.seed,
+            assembly: self.assembly,
+            mu: round12(self.mu),
+            mu_r: with(rolling, self.mu_r),
+            kr: with(rolling, self.rolling_stiffness()),
+            f0: with(cohesive, 1.0 / self.kappa),
+            kt: with(friction, self.kt_over_kn),
+            d0: with(cohesive, self.d0),
+            en: round12(self.en),
+            size_ratio: round12(self.size_ratio),
+            phi_i: round12(self.phi_i),
+            v0: with(self.assembly == Assembly::Type2, self.v0),
+            p0: round12(self.first_pressure()),
+            path: legs
+                .iter()
+                .map(|leg| PathLeg { to: round12(leg.to), per_decade: round12(leg.per_decade) })
+                .collect(),
+            ia: round12(self.ia),
+            cell_mass: round12(self.cell_mass),
+            assembly_cell_mass: match (self.assembly_cell_mass, self.assembly) {
+                (Some(mass), _) => Some(round12(mass)),
+                (None, Assembly::Type1) => None,
+                (None, _) => Some(round12(self.cell_mass)),
+            },
+            tolerance: round12(self.tolerance),
+            final_damping: round12(self.final_damping),
+            dt: round12(self.dt.unwrap_or(STEP)),
+            max_time: round12(self.max_time),
+        }
+    }
+
+    fn out_of_model(&self) -> Option<String> {
+        (self.assembly != Assembly::Cohesionless && self.kappa < 1e3).then(|| {
+            format!("kappa = {} is below 1000: contacts are not small against the discs", self.kappa)
+        })
+    }
+}
+
+impl Discs {
+    /// First pressure with the default resolved, P* (P/K_N without cohesion) [1].
+    #[must_use]
+    pub fn first_pressure(&self) -> f64 {
+        self.p0.unwrap_or(if self.assembly == Assembly::Cohesionless { 1e-5 } else { 0.01 })
+    }
+
+    /// K_R/(K_N a²) with the default resolved: l²/a² with l = μ_R/μ [1].
+    #[must_use]
+    pub fn rolling_stiffness(&self) -> f64 {
+        let length = if self.mu > 0.0 { self.mu_r / self.mu } else { 0.0 };
+        self.kr.unwrap_or(length * length)
+    }
+}
+
+/// Up in steps of 10^(1/8) and back in larger ones (section II D 2).
+fn paper_path(cohesive: bool, first: f64) -> Vec<PathLeg> {
+    let highest = if cohesive { 13.335_214_321_6 } else { 1.333_521_432_16e-3 };
+    vec![PathLeg { to: highest, per_decade: 8.0 }, PathLeg { to: first, per_decade: 2.0 }]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Reduced, Scene};
+    use serde_json::{Value, json};
+
+    fn reduced(keys: &Value) -> ReducedDiscs {
+        let mut scene = json!({"model": "cohesive_discs"});
+        scene.as_object_mut().unwrap().extend(keys.as_object().unwrap().clone());
+        let Reduced::CohesiveDiscs(reduced) = Scene::from_json(&scene).unwrap().reduce() else {
+            panic!("discs");
+        };
+        reduced
+    }
+
+    #[test]
+    fn defaults_are_those_of_table_1() {
+        let discs = reduced(&json!({}));
+        assert_eq!((discs.f0, discs.d0, discs.mu, discs.mu_r), (1e-5, 1e-3, 0.5, 0.005));
+        assert_eq!(discs.kr, 1e-4);
+        assert_eq!((discs.p0, discs.path.len(), discs.path[0].per_decade), (0.01, 2, 8.0));
+        assert_eq!(discs.assembly_cell_mass, Some(10.0));
+    }
+
+    #[test]
+    fn keys_without_effect_do_not_make_another_run() {
+        // Without cohesion κ and D0 mean nothing, without rolling resistance K_R, without friction K_T.
+        let one = reduced(&json!({"assembly": "cohesionless", "kappa": 1e4, "d0": 1e-2, "v0": 3}));
+        assert_eq!(one, reduced(&json!({"assembly": "cohesionless"})));
+        assert_eq!(reduced(&json!({"mu_r": 0, "kr": 3})), reduced(&json!({"mu_r": 0})));
+        assert_eq!(reduced(&json!({"mu": 0, "kt_over_kn": 0.5})), reduced(&json!({"mu": 0})));
+    }
+
+    #[test]
+    fn large_rolling_resistance_is_stiff() {
+        assert_eq!(reduced(&json!({"mu_r": 0.5})).kr, 1.0);
+    }
+
+    #[test]
+    fn bad_keys_are_named() {
+        for (keys, field) in [
+            (json!({"phi_i": 0.7}), "phi_i"),
+            (json!({"path": [{"to": 1.0, "per_decade": 1e6}]}), "path[0].per_decade"),
+            (json!({"p0": 0.0}), "p0"),
+            (json!({"dt": 0.3}), "dt"),
+            (json!({"assembly": "type3"}), "assembly"),
+            (json!({"v0": 0}), "v0"),
+            (json!({"en": 0}), "en"),
+            (json!({"path": [{"to": 1.0, "steps": 3}]}), "path[0].steps"),
+        ] {
+            let mut scene = json!({"model": "cohesive_discs"});
+            scene.as_object_mut().unwrap().extend(keys.as_object().unwrap().clone());
+            let problems = Scene::from_json(&scene).unwrap_err();
+            assert!(problems.0.iter().any(|problem| problem.field == field), "{field}: {problems}");
+        }
+    }
+}
