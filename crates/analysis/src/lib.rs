@@ -4,24 +4,38 @@
 //! |---|---|
 //! | `/sweeps/{id}/collapse` | [`collapse`] |
 //! | `/sweeps/{id}/fit` | [`fit_master`] on a [`Collapse`] |
+//! | `/sweeps/{id}/exponents` | [`exponents`] on a [`Collapse`] |
+//! | `/sweeps/{id}/bonds` | [`bonds`] |
+//! | `/sweeps/{id}/forces` | [`forces`]; one packing: [`forces::distribution`](forces::distribution()) |
+//!
+//! Runs come from records by [`Run::from_rows`]. Every answer is plain data for JSON; a part that the data do not
+//! determine is a [`Determined::Undetermined`] with its reason while the rest stands.
 
+pub mod bonds;
 pub mod collapse;
+pub mod compare;
 pub mod cost;
 mod error;
 mod estimate;
+pub mod exponents;
 pub mod fit;
+pub mod forces;
 mod joint;
 pub mod levels;
 pub mod master;
 pub mod plateau;
 mod point;
+mod resample;
 mod run;
 #[cfg(test)]
 mod synthetic;
 
+pub use bonds::{Bonds, bonds};
 pub use collapse::{Collapse, CollapseOptions, collapse};
 pub use error::{Determined, FitError};
 pub use estimate::Estimate;
+pub use exponents::{ExponentOptions, Exponents, exponents};
 pub use fit::Fit;
+pub use forces::{Forces, forces};
 pub use master::{MasterFit, fit as fit_master};
 pub use run::{NotARun, Run};
