@@ -1,3 +1,4 @@
 //! Initial states.
 
 pub mod hard_discs;
+pub(crate) mod spheres;
