@@ -1,0 +1,7 @@
+//! When a run may end, and on what evidence: pure functions of what was sampled.
+
+pub(crate) mod estimate;
+pub(crate) mod evidence;
+pub(crate) mod guard;
+pub(crate) mod plan;
+pub(crate) mod sample;

@@ -1,0 +1,237 @@
+//! Evidence that a packing stands still, and what a stop rule makes of it.
+
+use scene::spheres::Stop;
+use serde::{Deserialize, Serialize};
+
+use super::sample::Sample;
+
+/// Drift is measured while time grows by this factor: what has become of e in the last fifth of the run.
+pub(crate) const WINDOW: f64 = 1.25;
+/// Largest drift of Z+ or Z− in the window for `equilibrium` under the evidence rule [1].
+pub(crate) const Z_DRIFT: f64 = 0.02;
+/// Tolerances that decide the status where the stop rule does not name them.
+pub(crate) const DEFAULT_E_DRIFT: f64 = 2.5e-4;
+/// See [`DEFAULT_E_DRIFT`].
+pub(crate) const DEFAULT_WALL_IMBALANCE: f64 = 0.01;
+/// The paper's threshold of KE/E_el.
+pub(crate) const DEFAULT_KE: f64 = 2.0e-7;
+
+/// What the samples say about the end of the run. A quantity that is not defined yet (too few samples, nothing
+/// touches) is absent.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Evidence {
+    /// Largest minus smallest e in the window [1].
+    pub(crate) e_drift: Option<f64>,
+    /// Larger of |mean of the later half − mean of the earlier half| of the window for Z+ and Z− [1], doubled: the
+    /// change over the whole window of a steady drift, with the flicker of contacts near zero force averaged out.
+    pub(crate) z_drift: Option<f64>,
+    /// Largest |F/(p S) − 1| over the moving walls, F averaged over the window [1].
+    pub(crate) wall_imbalance: Option<f64>,
+    /// The same of the last sample alone [1].
+    pub(crate) wall_imbalance_now: f64,
+    /// KE/E_el [1].
+    pub(crate) ke_over_eel: Option<f64>,
+    /// The same with particles of fewer than four contacts left out of KE [1].
+    pub(crate) ke_held_over_eel: Option<f64>,
+    /// Unbalanced force on the backbone [1].
+    pub(crate) unbalanced: f64,
+}
+
+/// Reads the evidence off a series; `moving` says which walls are driven. The series must not be empty.
+pub(crate) fn evidence(samples: &[Sample], moving: [bool; 6]) -> Evidence {
+    let last = samples.last().expect("the initial state is sampled");
+    let ratio = |kinetic: f64| (last.elastic > 0.0).then(|| kinetic / last.elastic);
+    let mut found = Evidence {
+        wall_imbalance_now: imbalance(std::slice::from_ref(last), moving),
+        ke_over_eel: ratio(last.kinetic),
+        ke_held_over_eel: ratio(last.kinetic_held),
+        unbalanced: last.unbalanced,
+        ..Evidence::default()
+    };
+    let Some(window) = window(samples) else { return found };
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for sample in window {
+        low = low.min(sample.e);
+        high = high.max(sample.e);
+    }
+    found.e_drift = Some(high - low);
+    found.wall_imbalance = Some(imbalance(window, moving));
+    let (earlier, later) = window.split_at(window.len() / 2);
+    let change = |of: fn(&Sample) -> f64| 2.0 * (mean(later, of) - mean(earlier, of)).abs();
+    found.z_drift = Some(change(|sample| sample.z_plus).max(change(|sample| sample.z_minus)));
+    found
+}
+
+/// The samples of the last fifth of the time, one before them included; nothing while there are fewer than six.
+fn window(samples: &[Sample]) -> Option<&[Sample]> {
+    const FEWEST: usize = 6;
+    let from = samples.last()?.time / WINDOW;
+    let first = samples.partition_point(|sample| sample.time < from);
+    let window = &samples[first.saturating_sub(1)..];
+    (first > 0 && window.len() >= FEWEST).then_some(window)
+}
+
+#[expect(clippy::cast_precision_loss, reason = "a window is a few samples")]
+fn mean(samples: &[Sample], of: impl Fn(&Sample) -> f64) -> f64 {
+    samples.iter().map(of).sum::<f64>() / samples.len() as f64
+}
+
+fn imbalance(samples: &[Sample], moving: [bool; 6]) -> f64 {
+    (0..6)
+        .filter(|&wall| moving[wall])
+        .map(|wall| (mean(samples, |sample| sample.wall_forces[wall] / sample.wall_loads[wall]) - 1.0).abs())
+        .fold(0.0, f64::max)
+}
+
+/// What a stop rule makes of the evidence.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Verdict {
+    /// e stands still and the walls balance their load.
+    pub(crate) settled: bool,
+    /// Settled, and the energy and Z± stand still as well.
+    pub(crate) equilibrium: bool,
+    /// The rule of the scene says that the run may end.
+    pub(crate) stop: bool,
+}
+
+/// Which criteria hold, each by its own tolerance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Fired {
+    /// Drift of e.
+    pub(crate) e_drift: bool,
+    /// Balance of the walls.
+    pub(crate) wall_imbalance: bool,
+    /// KE/E_el of all particles.
+    pub(crate) ke: bool,
+    /// KE/E_el of held particles.
+    pub(crate) ke_held: bool,
+    /// Drift of Z±.
+    pub(crate) z_drift: bool,
+}
+
+impl Fired {
+    /// Names of the criteria that hold, joined by `+`; `none` when there are none.
+    pub(crate) fn names(self) -> String {
+        let all = [
+            (self.e_drift, "e_drift"),
+            (self.wall_imbalance, "wall_imbalance"),
+            (self.ke, "ke"),
+            (self.ke_held, "ke_held"),
+            (self.z_drift, "z_drift"),
+        ];
+        let names: Vec<&str> = all.into_iter().filter_map(|(fired, name)| fired.then_some(name)).collect();
+        if names.is_empty() { "none".to_owned() } else { names.join("+") }
+    }
+}
+
+/// The tolerances of a stop rule, defaults where it names none: (e drift, wall imbalance, KE/E_el).
+pub(crate) fn tolerances(stop: &Stop) -> (f64, f64, f64) {
+    match *stop {
+        Stop::Settled { e_drift, wall_imbalance } => (e_drift, wall_imbalance, DEFAULT_KE),
+        Stop::Evidence { e_drift, wall_imbalance, ke_over_eel } => (e_drift, wall_imbalance, ke_over_eel),
+        Stop::KineticEnergy { ke_over_eel } => (DEFAULT_E_DRIFT, DEFAULT_WALL_IMBALANCE, ke_over_eel),
+        Stop::Steps => (DEFAULT_E_DRIFT, DEFAULT_WALL_IMBALANCE, DEFAULT_KE),
+    }
+}
+
+/// Judges the evidence by a stop rule.
+pub(crate) fn judge(stop: &Stop, found: &Evidence) -> (Verdict, Fired) {
+    let (e_drift, wall_imbalance, ke) = tolerances(stop);
+    let within = |value: Option<f64>, tolerance: f64| value.is_some_and(|value| value <= tolerance);
+    let fired = Fired {
+        e_drift: within(found.e_drift, e_drift),
+        wall_imbalance: within(found.wall_imbalance, wall_imbalance),
+        ke: within(found.ke_over_eel, ke),
+        ke_held: within(found.ke_held_over_eel, ke),
+        z_drift: within(found.z_drift, Z_DRIFT),
+    };
+    let settled = fired.e_drift && fired.wall_imbalance;
+    let equilibrium = settled && fired.z_drift && (fired.ke || fired.ke_held);
+    // Taken alone the paper's ratio is met before anything happens when adhesion stores more energy in the first
+    // pairs than the agitation holds: the walls must carry at least most of their load.
+    let loaded = within(found.wall_imbalance, 0.1);
+    let stop = match stop {
+        Stop::Settled { .. } => settled,
+        Stop::Evidence { .. } => equilibrium,
+        Stop::KineticEnergy { .. } => fired.ke && loaded,
+        Stop::Steps => false,
+    };
+    (Verdict { settled, equilibrium, stop }, fired)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: [bool; 6] = [true; 6];
+    const RULE: Stop = Stop::Evidence { e_drift: 1e-3, wall_imbalance: 0.01, ke_over_eel: 2e-7 };
+
+    fn series(e: impl Fn(f64) -> f64, force: impl Fn(f64) -> f64, kinetic: f64) -> Vec<Sample> {
+        (0..200_u32)
+            .map(|k| {
+                let time = f64::from(k);
+                Sample {
+                    step: u64::from(k) * 10,
+                    time,
+                    dt: 0.1,
+                    e: e(time),
+                    z: 4.0,
+                    z_plus: 2.5 + 0.01 * f64::from(k % 2),
+                    z_minus: 1.5 - 0.01 * f64::from(k % 2),
+                    with_two: 10,
+                    kinetic,
+                    kinetic_held: kinetic * 1e-3,
+                    elastic: 1.0,
+                    unbalanced: 1e-5,
+                    wall_forces: [force(time); 6],
+                    wall_loads: [2.0; 6],
+                }
+            })
+            .collect()
+    }
+
+    #[test]
+    fn drift_is_the_change_over_the_last_fifth() {
+        let found = evidence(&series(|t| 2.0 - 1e-4 * t, |_| 2.0, 1.0), ALL);
+        // the window starts at or just before 199/1.25 = 159.2
+        assert!((found.e_drift.unwrap() - 40.0e-4).abs() < 1e-12);
+        assert!(found.z_drift.unwrap() < 3e-3, "flicker averages out");
+    }
+
+    #[test]
+    fn each_criterion_can_hold_the_run_back() {
+        let good = evidence(&series(|_| 1.2, |_| 2.0, 1e-9), ALL);
+        assert!(judge(&RULE, &good).0.stop);
+        for bad in [
+            Evidence { e_drift: Some(2e-3), ..good },
+            Evidence { wall_imbalance: Some(0.02), ..good },
+            Evidence { ke_over_eel: Some(1e-6), ke_held_over_eel: Some(1e-6), ..good },
+            Evidence { z_drift: Some(0.1), ..good },
+            Evidence { e_drift: None, ..good },
+        ] {
+            assert!(!judge(&RULE, &bad).0.stop, "{bad:?}");
+        }
+        let flying = Evidence { ke_over_eel: Some(1e-2), ..good };
+        let (verdict, fired) = judge(&RULE, &flying);
+        assert!(verdict.stop, "loose particles alone do not hold it back");
+        assert_eq!(fired.names(), "e_drift+wall_imbalance+ke_held+z_drift");
+    }
+
+    #[test]
+    fn the_papers_rule_waits_for_loaded_walls() {
+        let rule = Stop::KineticEnergy { ke_over_eel: 2e-7 };
+        let unloaded = evidence(&series(|_| 1.7, |_| 0.0, 1e-9), ALL);
+        assert!(!judge(&rule, &unloaded).0.stop);
+        let loaded = evidence(&series(|t| 2.0 - 1e-4 * t, |_| 2.0, 1e-9), ALL);
+        let (verdict, _) = judge(&rule, &loaded);
+        assert!(verdict.stop && !verdict.settled && !verdict.equilibrium);
+    }
+
+    #[test]
+    fn fixed_walls_owe_no_balance_and_early_samples_no_verdict() {
+        let samples = series(|_| 1.2, |_| 3.0, 0.0);
+        assert!((evidence(&samples, ALL).wall_imbalance.unwrap() - 0.5).abs() < 1e-12);
+        assert_eq!(evidence(&samples, [false; 6]).wall_imbalance, Some(0.0));
+        assert_eq!(evidence(&samples[..3], ALL).e_drift, None);
+    }
+}
