@@ -2,6 +2,7 @@
 
 use scene::Reduced;
 
+use crate::spheres::Run;
 use crate::{Options, SimError, Simulation};
 
 /// Builds the simulation of a reduced scene from its initial state.
@@ -9,8 +10,11 @@ use crate::{Options, SimError, Simulation};
 /// # Errors
 /// [`SimError::Scene`] when the combination is not legal.
 pub fn compile(scene: &Reduced, options: &Options) -> Result<Box<dyn Simulation>, SimError> {
-    let _ = (scene, options);
-    Err(SimError::Internal("under construction".to_owned()))
+    let key = scene.key().as_str().to_owned();
+    match scene {
+        Reduced::CohesiveSpheres(spheres) => Ok(Box::new(Run::new(spheres, key, options)?)),
+        other => Err(no_engine(other)),
+    }
 }
 
 /// Continues from a checkpoint made by [`Simulation::save`] for the same scene.
@@ -22,6 +26,18 @@ pub fn restore(
     options: &Options,
     checkpoint: &[u8],
 ) -> Result<Box<dyn Simulation>, SimError> {
-    let _ = (scene, options, checkpoint);
-    Err(SimError::Internal("under construction".to_owned()))
+    let key = scene.key().as_str().to_owned();
+    match scene {
+        Reduced::CohesiveSpheres(spheres) => Ok(Box::new(Run::restore(spheres, key, options, checkpoint)?)),
+        other => Err(no_engine(other)),
+    }
+}
+
+/// The scene is valid, but nothing here can run it.
+pub(crate) fn no_engine(scene: &Reduced) -> SimError {
+    SimError::Scene {
+        field: "model".to_owned(),
+        problem: format!("{} has no engine in this version", scene.model().name()),
+        remedy: "use another model".to_owned(),
+    }
 }

@@ -38,6 +38,8 @@ pub struct Skip {
 /// # Errors
 /// [`SimError::Scene`] when the scene would not compile.
 pub fn explain(scene: &Reduced) -> Result<Explanation, SimError> {
-    let _ = scene;
-    Err(SimError::Internal("under construction".to_owned()))
+    match scene {
+        Reduced::CohesiveSpheres(spheres) => crate::spheres::explain(spheres),
+        other => Err(crate::compile::no_engine(other)),
+    }
 }

@@ -3,13 +3,16 @@
 mod compile;
 pub mod dem;
 pub mod elasticity;
+mod equilibrium;
 mod error;
 mod explain;
 pub mod loading;
 pub mod mpm;
 pub mod observables;
 pub mod packing;
+mod random;
 mod simulation;
+mod spheres;
 
 pub use compile::{compile, restore};
 pub use error::SimError;

@@ -1,0 +1,148 @@
+//! From a reduced scene to parameters, time step and initial state.
+
+use scene::spheres::{Approach, DampingMass, ReducedSpheres};
+
+use super::system;
+use crate::dem::{InitialState, SphereParameters};
+use crate::equilibrium::estimate;
+use crate::packing::spheres::{self as packing, Request};
+use crate::{Explanation, Options, SimError, Skip};
+
+/// Largest automatic time step [τ]: 0.05, 0.1 and 0.2 give the same e within seed scatter (docs/accuracy.md).
+const LARGEST_DT: f64 = 0.1;
+/// Largest share of the critical time step of the present network that is used.
+const SAFETY: f64 = 0.7;
+/// Farthest a particle may fly in one step at the start [d].
+const FARTHEST_FLIGHT: f64 = 0.02;
+
+/// Parameters of the laws.
+pub(crate) fn parameters(scene: &ReducedSpheres) -> SphereParameters {
+    SphereParameters {
+        pressure: scene.pressure,
+        adhesion: scene.adhesion,
+        wall_adhesion: scene.adhesion * scene.wall_adhesion,
+        alpha_n: scene.alpha_n,
+        damping_uses_particle_mass: scene.damping_mass == DampingMass::Particle,
+        clamp_viscous: scene.clamp_viscous,
+        mu: scene.mu,
+        mu_wall: scene.mu_wall,
+        kt: scene.kt_over_kn,
+        wall_mass: scene.wall_mass,
+        moving: moving(scene),
+    }
+}
+
+/// Which walls move: all six, or only the three high ones.
+pub(crate) fn moving(scene: &ReducedSpheres) -> [bool; 6] {
+    let low = scene.moving_walls == 6;
+    [low, true, low, true, low, true]
+}
+
+/// The largest time step of a run and why [τ].
+pub(crate) fn largest_dt(scene: &ReducedSpheres) -> (f64, String) {
+    if let Some(dt) = scene.dt {
+        return (dt, "given".to_owned());
+    }
+    // a jammed wall rests on about one contact per d² of its area; the stability limit of that mode is 2/ω
+    let lengths = packing::box_lengths(usize::try_from(scene.n).unwrap_or(usize::MAX), scene.ei.min(1.0));
+    let wall_limit = SAFETY * 2.0 / (lengths[1] * lengths[2] / scene.wall_mass).sqrt();
+    let flight =
+        if scene.agitation_speed > 0.0 { FARTHEST_FLIGHT / scene.agitation_speed } else { f64::INFINITY };
+    if flight < LARGEST_DT && flight <= wall_limit {
+        return (flight, "a particle flies at most 0.02 d per step at the start".to_owned());
+    }
+    if wall_limit < LARGEST_DT {
+        return (wall_limit, "stiffest mode: a wall on its contacts".to_owned());
+    }
+    (LARGEST_DT, "0.1 τ, below the stiffest mode".to_owned())
+}
+
+/// The automatic time step for a network with critical time step `critical`: the largest cap/2^(k/2) below the
+/// safe share of it [τ].
+pub(crate) fn safe_dt(cap: f64, critical: f64) -> f64 {
+    let mut dt = cap;
+    while dt > SAFETY * critical && dt > 1.0e-6 {
+        dt *= std::f64::consts::FRAC_1_SQRT_2;
+    }
+    dt
+}
+
+/// The initial state.
+///
+/// # Errors
+/// [`SimError::Scene`] naming `ei` when the spheres do not fit.
+pub(crate) fn initial_state(scene: &ReducedSpheres) -> Result<InitialState, SimError> {
+    let n = usize::try_from(scene.n).map_err(|_| SimError::Scene {
+        field: "n".to_owned(),
+        problem: format!("{} spheres do not fit into memory", scene.n),
+        remedy: "lower n".to_owned(),
+    })?;
+    let request = Request { n, ei: scene.ei, speed: scene.agitation_speed, seed: scene.seed };
+    let packed = packing::initial(&request)?;
+    let [x, y, z] = packed.lengths;
+    Ok(InitialState {
+        spins: vec![[0.0; 3]; n],
+        positions: packed.positions,
+        velocities: packed.velocities,
+        walls: [0.0, x, 0.0, y, 0.0, z],
+        wall_velocities: [0.0; 6],
+    })
+}
+
+/// What a scene would run. A small system of the same laws is built to name the kernel and to measure the memory.
+///
+/// # Errors
+/// [`SimError::Scene`] when the scene has no initial state.
+pub(crate) fn explain(scene: &ReducedSpheres) -> Result<Explanation, SimError> {
+    /// Cost of one step on one core of a current machine [s per particle].
+    const SECONDS_PER_PARTICLE_STEP: f64 = 30.0e-9;
+    /// Size of the small system.
+    const TRIAL: u64 = 1000;
+    let (dt, dt_reason) = largest_dt(scene);
+    let (expected_steps, _) = estimate::steps(scene, dt);
+    let trial = ReducedSpheres { n: scene.n.min(TRIAL), ..scene.clone() };
+    let system = system::new(&parameters(&trial), &initial_state(&trial)?, dt, &Options::default())?;
+    let bytes = system.counters().bytes;
+    #[expect(clippy::cast_precision_loss, reason = "an estimate")]
+    let expected_seconds = expected_steps as f64 * scene.n as f64 * SECONDS_PER_PARTICLE_STEP;
+    Ok(Explanation {
+        kernel: system.kernel(),
+        skips: skips(scene),
+        dt,
+        dt_reason,
+        memory_bytes: bytes.saturating_mul(scene.n.div_ceil(trial.n)),
+        expected_steps,
+        expected_seconds,
+    })
+}
+
+fn skips(scene: &ReducedSpheres) -> Vec<Skip> {
+    let skip = |absent: &str, skipped: &str| Skip { absent: absent.to_owned(), skipped: skipped.to_owned() };
+    let mut found = Vec::new();
+    if scene.mu == 0.0 && scene.mu_wall == 0.0 {
+        found
+            .push(skip("friction (mu = 0, mu_wall = 0)", "spins, torques, tangential history and its force"));
+    }
+    if scene.adhesion == 0.0 {
+        found.push(skip("adhesion (sigma_c = 0)", "statistics of fn/fc and the exponents β±"));
+    }
+    if scene.alpha_n == 0.0 {
+        found.push(skip("damping (alpha_n = 0)", "the viscous force"));
+    }
+    if scene.approach == Approach::Natural {
+        found.push(skip("rolling kicks", "drag and kicks"));
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_ladder_goes_down_only_as_far_as_needed() {
+        assert_eq!(safe_dt(0.1, f64::INFINITY), 0.1);
+        assert_eq!(safe_dt(0.1, 0.15), 0.1);
+        assert_eq!(safe_dt(0.1, 0.11), 0.1 * std::f64::consts::FRAC_1_SQRT_2);
+    }
+}
