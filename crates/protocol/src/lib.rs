@@ -2,6 +2,8 @@
 //! typed client (feature `client`). Shared by coordinator, worker, command line and tests.
 
 pub mod api;
+#[cfg(feature = "client")]
+pub mod client;
 mod ids;
 mod job;
 mod lease;
