@@ -19,7 +19,7 @@ pub struct Flags {
     #[arg(long, value_name = "FILE", env = "TAMP_WORKER_CONFIG")]
     #[serde(skip)]
     pub config: Option<PathBuf>,
-    /// Address of the coordinator [default: http://127.0.0.1:8080]
+    /// Address of the coordinator [default: http://127.0.0.1:8300]
     #[arg(long, value_name = "URL")]
     #[serde(skip_serializing_if = "Option::is_none")]
     pub server: Option<String>,
@@ -108,7 +108,7 @@ pub struct Config {
 impl Default for Config {
     fn default() -> Self {
         Self {
-            server: "http://127.0.0.1:8080".to_owned(),
+            server: "http://127.0.0.1:8300".to_owned(),
             slots: host::cores(),
             threads: 1,
             token: None,

@@ -80,9 +80,8 @@ impl Job {
     /// Reads the scene and gathers the checkpoints to go on from.
     async fn prepare(&self) -> Result<Task, Failed> {
         let grant = &self.grant;
-        let scene: Reduced = serde_json::from_value(grant.reduced.clone()).map_err(|error| {
-            Failed::retryable("protocol", format!("the granted scene is unknown here: {error}"))
-        })?;
+        let scene = Reduced::from_json(&grant.reduced)
+            .map_err(|problems| Failed::retryable("protocol", problems.to_string()))?;
         let key = scene.key();
         if key.as_str() != grant.scene_key {
             let message = format!("granted as {}, computed here as {key}", grant.scene_key);

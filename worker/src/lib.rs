@@ -88,8 +88,8 @@ impl Default for Parts {
 pub async fn run(config: Config, parts: Parts, stop: CancellationToken) -> Result<Ended, WorkerError> {
     config.check()?;
     let client = Client::new(&config.server, config.token.clone(), Patience::none())?;
-    let shelf = directory(&config, "checkpoints", Shelf::open)?;
-    let outbox = directory(&config, "outbox", Outbox::open)?;
+    let shelf = directory(&config, "worker-checkpoints", Shelf::open)?;
+    let outbox = directory(&config, "worker-outbox", Outbox::open)?;
     shelf.tidy(KEEP_CHECKPOINTS);
     let registration = session::introduction(&config, parts.engine.as_ref(), Uuid::new_v4());
     tracing::info!(server = config.server, slots = config.slots, "starting");

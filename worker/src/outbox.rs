@@ -15,7 +15,7 @@ const MAGIC: [u8; 8] = *b"TAMPRP01";
 
 /// The last word on an attempt.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(tag = "kind", rename_all = "snake_case")]
+#[serde(rename_all = "snake_case")]
 pub enum Message {
     /// The run is finished.
     Result(Box<Completion>),

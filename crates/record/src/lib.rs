@@ -6,13 +6,17 @@
 //! into any of them: [`Finite`] refuses it at construction and at deserialisation.
 
 mod cell;
+mod csv;
 mod finite;
 mod outcome;
 mod row;
 mod table;
+mod vtk;
 
 pub use cell::Cell;
+pub use csv::csv;
 pub use finite::{Finite, NotFinite};
 pub use outcome::{Outcome, Packing};
 pub use row::Row;
 pub use table::{Column, Table, TableError};
+pub use vtk::{NoPicture, vtk};

@@ -91,7 +91,7 @@ impl Call {
 }
 
 impl Client {
-    /// A client of the coordinator at `server`, for example `http://127.0.0.1:8080`.
+    /// A client of the coordinator at `server`, for example `http://127.0.0.1:8300`.
     ///
     /// # Errors
     /// [`BuildError`] when the address or the token cannot be used.
