@@ -78,7 +78,7 @@ impl Desk {
         let ended = loop {
             let leave = *gate.borrow_and_update();
             self.obey(leave);
-            if leave == Leave::Leave {
+            if leave == Leave::End {
                 break Ok(Ended::TimeOver);
             }
             if self.is_idle_for_too_long() {
@@ -192,7 +192,7 @@ impl Desk {
     fn obey(&self, leave: Leave) {
         for control in self.controls.values() {
             control.pause(leave == Leave::Pause);
-            if matches!(leave, Leave::Yield | Leave::Leave) {
+            if matches!(leave, Leave::Yield | Leave::End) {
                 control.command(Command::Yield);
             }
         }
@@ -219,7 +219,7 @@ impl Desk {
         if !self.controls.is_empty() {
             tracing::info!(jobs = self.controls.len(), "saving and giving back");
         }
-        self.obey(Leave::Leave);
+        self.obey(Leave::End);
         while self.running.join_next().await.is_some() {}
     }
 }

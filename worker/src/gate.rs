@@ -12,7 +12,7 @@ pub enum Leave {
     /// Others need the machine for long: give the jobs back with their checkpoints, claim nothing.
     Yield,
     /// The time is over: give the jobs back and end.
-    Leave,
+    End,
 }
 
 /// The rules.
@@ -53,7 +53,7 @@ impl Gate {
     /// Decides. `elapsed` is a monotonic time, `foreign` the load of others [cores], `None` when unknown.
     pub fn observe(&mut self, elapsed: Duration, now: SystemTime, foreign: Option<f64>) -> Leave {
         if self.rules.until.is_some_and(|until| now + self.rules.margin >= until) {
-            return Leave::Leave;
+            return Leave::End;
         }
         if !self.rules.idle_only {
             return Leave::Work;
@@ -145,6 +145,6 @@ mod tests {
         };
         let told = answers(rules, &[None; 6]);
         assert_eq!(told[..4], [Leave::Work; 4]);
-        assert_eq!(told[4..], [Leave::Leave; 2]);
+        assert_eq!(told[4..], [Leave::End; 2]);
     }
 }
