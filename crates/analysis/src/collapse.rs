@@ -218,15 +218,18 @@ pub(crate) fn scatter_of(points: &[&CollapsePoint]) -> Result<Scatter, FitError>
     scatter("collapse", &u, &y, &vec![1.0; u.len()], Shape::Increasing)
 }
 
-/// The main series has the most common α_n, m_w and e_i.
+/// The main series has the most common α_n, m_w and e_i; among equally common ones the nearest to the default.
 fn roles(points: &[Point], options: &CollapseOptions) -> Vec<Role> {
-    let common = |get: fn(&Run) -> f64| {
+    let common = |get: fn(&Run) -> f64, default: f64| {
         let mut values: Vec<f64> = points.iter().map(|point| get(&point.scene)).collect();
         values.sort_by(f64::total_cmp);
-        let most = values.chunk_by(|a, b| a == b).max_by_key(|chunk| chunk.len());
-        most.map_or(0.0, |chunk| chunk[0])
+        let rank = |chunk: &&[f64]| (chunk.len(), -(chunk[0] - default).abs());
+        let most = values
+            .chunk_by(|a, b| a == b)
+            .max_by(|a, b| rank(a).partial_cmp(&rank(b)).expect("scenes hold finite numbers"));
+        most.map_or(default, |chunk| chunk[0])
     };
-    let main = [common(|run| run.alpha_n), common(|run| run.mw), common(|run| run.ei)];
+    let main = [common(|run| run.alpha_n, 0.25), common(|run| run.mw, 96.0), common(|run| run.ei, 1.704)];
     points
         .iter()
         .map(|point| {

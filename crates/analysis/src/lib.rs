@@ -7,6 +7,10 @@
 //! | `/sweeps/{id}/exponents` | [`exponents`] on a [`Collapse`] |
 //! | `/sweeps/{id}/bonds` | [`bonds`] |
 //! | `/sweeps/{id}/forces` | [`forces`]; one packing: [`forces::distribution`](forces::distribution()) |
+//! | packing of one job | [`profile::from_table`] |
+//! | α_n, m_w, e_i | [`variation`](variation()) |
+//!
+//! Pictures of all of them: [`plot`].
 //!
 //! Runs come from records by [`Run::from_rows`]. Every answer is plain data for JSON; a part that the data do not
 //! determine is a [`Determined::Undetermined`] with its reason while the rest stands.
@@ -24,11 +28,14 @@ mod joint;
 pub mod levels;
 pub mod master;
 pub mod plateau;
+pub mod plot;
 mod point;
+pub mod profile;
 mod resample;
 mod run;
 #[cfg(test)]
 mod synthetic;
+pub mod variation;
 
 pub use bonds::{Bonds, bonds};
 pub use collapse::{Collapse, CollapseOptions, collapse};
@@ -39,3 +46,4 @@ pub use fit::Fit;
 pub use forces::{Forces, forces};
 pub use master::{MasterFit, fit as fit_master};
 pub use run::{NotARun, Run};
+pub use variation::{Variation, variation};

@@ -1,0 +1,19 @@
+//! Pictures as SVG text, 800 px wide, on white, in colours that the colour-blind can tell apart (Okabe & Ito).
+
+mod axis;
+mod bonds;
+mod collapse;
+mod exponents;
+mod figure;
+mod forces;
+mod profile;
+mod series;
+
+pub use bonds::bonds_svg;
+pub use collapse::{collapse_svg, master_svg, plateau_svg, raw_svg};
+pub use exponents::exponents_svg;
+pub use forces::{distribution_svg, forces_svg};
+pub use profile::{profile_svg, variation_svg};
+
+#[cfg(test)]
+mod tests;
