@@ -4,7 +4,19 @@
 //! contacts is known to [`crate::state`] alone.
 
 mod dynamics;
+mod engine;
+mod kernel;
+mod lists;
+mod motion;
+mod persist;
+mod probe;
+mod spheres;
+mod step;
+mod threads;
+mod time_step;
 mod view;
 
 pub use dynamics::{Counters, Drag, Dynamics, Fault, InitialState, Motion, SphereParameters};
+pub use spheres::{Laws, restore_spheres, spheres};
+pub use time_step::largest_step;
 pub use view::{Energies, PairContact, View, WallContact, WallView};

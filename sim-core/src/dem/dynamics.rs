@@ -1,6 +1,14 @@
 //! What the rest of the program may do with a running particle system.
 
+use serde::{Deserialize, Serialize};
+
 use super::View;
+use super::engine::Dem;
+use super::lists::speed;
+use crate::boundary::Boundary;
+use crate::contact::ContactLaw;
+use crate::space::Space;
+use crate::state::{Body, ContactList, Force, Grains};
 
 /// A particle system with its laws chosen. Object-safe and coarse: called per batch of steps.
 ///
@@ -108,7 +116,7 @@ pub struct Motion {
 }
 
 /// A drag −γ m v and −γ I ω on particles; rates γ in 1/τ.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub enum Drag {
     /// None.
     #[default]
@@ -149,4 +157,107 @@ pub struct Counters {
     pub threads: u64,
     /// Bytes of the state and its lists.
     pub bytes: u64,
+}
+
+impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dynamics for Dem<S, G, B, C> {
+    fn run(&mut self, steps: u64) -> Result<(), Fault> {
+        self.advance_steps(steps)
+    }
+
+    fn steps(&self) -> u64 {
+        self.step
+    }
+
+    fn time(&self) -> f64 {
+        self.time
+    }
+
+    fn dt(&self) -> f64 {
+        self.dt
+    }
+
+    fn set_dt(&mut self, dt: f64) {
+        self.change_dt(dt);
+    }
+
+    fn critical_dt(&self) -> f64 {
+        self.network_limit()
+    }
+
+    fn view(&self) -> View {
+        self.picture()
+    }
+
+    fn wall_positions(&self) -> [f64; 6] {
+        self.walls.as_ref().map_or([0.0; 6], |walls| walls.position)
+    }
+
+    fn max_speed(&self) -> f64 {
+        self.bodies.iter().map(speed).fold(0.0, f64::max)
+    }
+
+    fn set_motion(&mut self, changes: &[Motion]) {
+        let mut slot_of = vec![0_usize; self.bodies.len()];
+        for (slot, &particle) in self.original.iter().enumerate() {
+            slot_of[particle as usize] = slot;
+        }
+        let row = |v: [f64; 3]| [v[0], v[1], v[2], 0.0];
+        for change in changes {
+            let body = &mut self.bodies[slot_of[change.particle]];
+            body.velocity = row(change.velocity);
+            if C::NEEDS_SPIN {
+                body.spin = row(change.spin);
+            }
+        }
+        // Budgets were made for the old speeds.
+        self.refresh();
+    }
+
+    fn set_drag(&mut self, drag: Drag) {
+        self.drag = drag;
+        self.order_drag();
+    }
+
+    fn counters(&self) -> Counters {
+        let touching = |list: &ContactList| {
+            (0..list.count)
+                .filter(|&k| (0..C::SLOTS).any(|slot| list.slot(k, slot) != C::vacant(slot)))
+                .count() as u64
+        };
+        let mut counters = Counters {
+            particles: self.bodies.len() as u64,
+            rebuilds: self.lists.rebuilds,
+            refreshes: self.lists.refreshes,
+            threads: self.threads as u64,
+            ..Counters::default()
+        };
+        if C::SLOTS == 0 {
+            counters.contacts = self.probe().pairs.len() as u64;
+            counters.wall_contacts = self.probe().walls.len() as u64;
+        }
+        let mut bytes = self.bodies.capacity() * size_of::<Body>()
+            + self.forces.capacity() * size_of::<Force>()
+            + self.lists.near_at.capacity() * size_of::<[f64; 3]>()
+            + self.lists.budget.capacity() * size_of::<f64>()
+            + self.lists.cells.bytes();
+        for chunk in &self.chunks {
+            if C::SLOTS > 0 {
+                counters.contacts += touching(&chunk.inner) + touching(&chunk.outer);
+                counters.wall_contacts += chunk.walls.iter().map(touching).sum::<u64>();
+            }
+            counters.listed_pairs += (chunk.inner.count + chunk.outer.count) as u64;
+            counters.near_pairs += chunk.near.len() as u64;
+            bytes += chunk.bytes();
+        }
+        counters.bytes = bytes as u64;
+        counters
+    }
+
+    fn kernel(&self) -> String {
+        format!("{};{}", Self::law_name(), self.path.name())
+    }
+
+    fn save(&self) -> Vec<u8> {
+        self.persist()
+    }
 }

@@ -1,0 +1,199 @@
+//! A complete law, put together from its slots.
+
+use super::attraction::Attraction;
+use super::damping::Damping;
+use super::normal::Normal;
+use super::rolling::Rolling;
+use super::tangential::{Tangent, Tangential};
+use super::{PairGeometry, PairMotion, Response};
+use crate::lane::{GROUP, Lane};
+use crate::space::{Space, Vector};
+
+/// Normal, damping, attraction, tangential and rolling law of one kind of contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Law<N, D, A, T, R> {
+    /// Elastic repulsion.
+    pub normal: N,
+    /// Dashpot.
+    pub damping: D,
+    /// Attraction.
+    pub attraction: A,
+    /// Friction.
+    pub tangential: T,
+    /// Rolling resistance.
+    pub rolling: R,
+}
+
+/// Stiffnesses and dashpot of a law, for the time step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stiffness {
+    /// Along the normal [k_n].
+    pub normal: f64,
+    /// Tangential [k_n].
+    pub tangential: f64,
+    /// Rolling [k_n d²].
+    pub rolling: f64,
+    /// Dashpot coefficient over √mass [√k_n].
+    pub damping: f64,
+}
+
+/// What the engine sees of a law.
+pub trait ContactLaw<S: Space>: Copy + Send + Sync + 'static {
+    /// Slots of memory per contact.
+    const SLOTS: usize;
+    /// Whether spins and torques exist.
+    const NEEDS_SPIN: bool;
+    /// Whether there are rolling moments.
+    const ROLLS: bool;
+    /// Slot of the tangential memory.
+    const TANGENTIAL_SLOT: usize;
+
+    /// Largest gap at which the pair interacts [d].
+    fn range(&self) -> f64;
+    /// Forces of one contact (or one group of them), updating its memory.
+    ///
+    /// # Safety
+    /// `memory` points to [`ContactLaw::SLOTS`] slots of a group at the first lane.
+    unsafe fn evaluate<L: Lane>(
+        &self,
+        geometry: &PairGeometry<S, L>,
+        motion: &PairMotion<S, L>,
+        dt: L,
+        memory: *mut f64,
+    ) -> Response<S, L>;
+    /// Memory of an open contact, slot by slot.
+    fn vacant(slot: usize) -> f64;
+    /// For the time step.
+    fn stiffness(&self) -> Stiffness;
+    /// Elastic normal energy and potential of the attraction [k_n d²].
+    fn potential(&self, overlap: f64) -> (f64, f64);
+    /// Coulomb bound for an elastic normal force [k_n d].
+    fn bound(&self, elastic: f64) -> f64;
+    /// Part of the kernel name.
+    fn name() -> String;
+}
+
+impl<S, N, D, A, T, R> ContactLaw<S> for Law<N, D, A, T, R>
+where
+    S: Space,
+    N: Normal,
+    D: Damping,
+    A: Attraction,
+    T: Tangential<S>,
+    R: Rolling<S>,
+{
+    const SLOTS: usize = D::SLOTS + T::SLOTS + R::SLOTS;
+    const NEEDS_SPIN: bool = T::NEEDS_SPIN || R::ROLLS;
+    const ROLLS: bool = R::ROLLS;
+    const TANGENTIAL_SLOT: usize = D::SLOTS;
+
+    fn range(&self) -> f64 {
+        self.attraction.range()
+    }
+
+    #[inline(always)]
+    unsafe fn evaluate<L: Lane>(
+        &self,
+        geometry: &PairGeometry<S, L>,
+        motion: &PairMotion<S, L>,
+        dt: L,
+        memory: *mut f64,
+    ) -> Response<S, L> {
+        let half = L::splat(0.5);
+        let zero = L::splat(0.0);
+        let normal = geometry.normal;
+        // Velocities are those of t_n − dt/2, so the normal is taken there too: n − (dt/2) dn/dt.
+        let opening = motion.velocity.dot(normal);
+        let across = motion.velocity.sub_scaled(opening, normal);
+        let normal_rate = across.scale(geometry.inverse_distance);
+        let half_dt = half.mul(dt);
+        // u = −v·(n − (dt/2) dn/dt)
+        let approach = half_dt.mul(across.dot(normal_rate)).sub(opening);
+
+        let overlap = geometry.overlap;
+        let closed = zero.less(overlap);
+        let share = L::splat(1.0).keep(closed);
+        let share = if D::JUMPS || A::JUMPS { share_of_step(overlap, approach, dt, share) } else { share };
+        let active = zero.less(share);
+
+        let elastic = self.normal.elastic(overlap);
+        // SAFETY: the caller vouches for the slots; so below.
+        let viscous = unsafe { self.damping.viscous(approach, geometry.root_mass, share, active, memory) };
+        let attraction = self.attraction.force(overlap, share);
+        let normal_force = self.damping.repulsion(elastic, viscous).sub(attraction);
+
+        let tangential = if T::NEEDS_SPIN {
+            let normal_between = normal.sub_scaled(half_dt, normal_rate);
+            // Lever arms reach the middle of the overlap: R − ov/2, with the overlap of t_n − dt/2.
+            let quarter = half.mul(half_dt.neg_mul_add(approach, overlap));
+            let rim = motion.rim.sub_scaled(quarter, motion.spin_sum);
+            let slip = motion.velocity.add_scaled(approach, normal_between);
+            let slip = slip.add_scaled(L::splat(-1.0), S::spin_cross(rim, normal_between));
+            let tangent = Tangent { slip, normal_rate, mean_spin: motion.spin_sum.scale(half) };
+            // SAFETY: see above.
+            unsafe {
+                self.tangential.force(geometry, &tangent, elastic, active, dt, memory.add(D::SLOTS * GROUP))
+            }
+        } else {
+            S::Vector::zero()
+        };
+        let rolling = if R::ROLLS {
+            // SAFETY: see above.
+            unsafe {
+                self.rolling.moment(
+                    motion.spin_difference,
+                    elastic,
+                    active,
+                    dt,
+                    memory.add((D::SLOTS + T::SLOTS) * GROUP),
+                )
+            }
+        } else {
+            S::Spin::zero()
+        };
+        Response { normal: normal_force, elastic, attraction, viscous, tangential, rolling }
+    }
+
+    fn vacant(slot: usize) -> f64 {
+        if slot < D::SLOTS { D::vacant() } else { 0.0 }
+    }
+
+    fn stiffness(&self) -> Stiffness {
+        Stiffness {
+            normal: self.normal.stiffness().max(self.attraction.stiffness()),
+            tangential: self.tangential.stiffness(),
+            rolling: self.rolling.stiffness(),
+            damping: self.damping.coefficient(),
+        }
+    }
+
+    fn potential(&self, overlap: f64) -> (f64, f64) {
+        (self.normal.energy(overlap), self.attraction.energy(overlap))
+    }
+
+    fn bound(&self, elastic: f64) -> f64 {
+        self.tangential.bound(elastic)
+    }
+
+    fn name() -> String {
+        [N::NAME, D::NAME, A::NAME, T::NAME, R::NAME].concat()
+    }
+}
+
+/// The part of [t_n − dt/2, t_n + dt/2] in which the contact is closed.
+///
+/// Adhesion and dashpot jump when a contact opens or closes. A force switched on at the next full step is wrong by
+/// up to half a step of impulse, which makes any scheme first order; weighting the step in which the overlap changes
+/// sign, s = 1/2 + ov/(|u| dt), restores the second order (tests: restitution against the exact solution).
+/// `whole` is 1 for a closed contact and 0 for an open one.
+#[inline(always)]
+fn share_of_step<L: Lane>(overlap: L, approach: L, dt: L, whole: L) -> L {
+    let travel = approach.abs().mul(dt);
+    let crossing = overlap.abs().less(L::splat(0.5).mul(travel));
+    if L::any(crossing) {
+        let part = overlap.div(travel).add(L::splat(0.5)).max(L::splat(0.0)).min(L::splat(1.0));
+        L::select(crossing, part, whole)
+    } else {
+        whole
+    }
+}

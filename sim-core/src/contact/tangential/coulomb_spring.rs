@@ -1,0 +1,68 @@
+//! Incremental tangential spring with Coulomb limit (paper 2024, eq. 7; discs 2008, Table I).
+//!
+//! The spring ξ is the tangential displacement of b against a since the contact closed; the force on a is k_t ξ.
+//! Per step: ξ grows by the slip, follows the contact as it turns (about its tangents with the normal, about the
+//! normal with the mean spin of the bodies: a rigidly rotating pair keeps its spring exactly, to second order), is
+//! projected on the tangent plane, and is cut back to |k_t ξ| = μ f_e, the elastic part of the normal force alone.
+
+use super::{Tangent, Tangential};
+use crate::contact::PairGeometry;
+use crate::lane::Lane;
+use crate::space::{Space, Vector};
+
+/// Spring k_t, limit μ f_e.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoulombSpring {
+    /// k_t [k_n].
+    pub kt: f64,
+    /// μ [1].
+    pub mu: f64,
+}
+
+impl<S: Space> Tangential<S> for CoulombSpring {
+    const SLOTS: usize = S::DIMENSION;
+    const NEEDS_SPIN: bool = true;
+    const NAME: &'static str = "+coulomb";
+
+    #[inline(always)]
+    unsafe fn force<L: Lane>(
+        &self,
+        geometry: &PairGeometry<S, L>,
+        tangent: &Tangent<S, L>,
+        elastic: L,
+        active: L::Mask,
+        dt: L,
+        memory: *mut f64,
+    ) -> S::Vector<L> {
+        let normal = geometry.normal;
+        // SAFETY: the caller vouches for the slots.
+        let old: S::Vector<L> = unsafe { S::Vector::load(memory) };
+        let turned = S::twist(old, normal, tangent.mean_spin, dt);
+        let grown = turned.add_scaled(dt, tangent.slip);
+        // The normal turned by dn: ξ loses its part along the new normal and gains half of it along dn.
+        let along = grown.dot(normal);
+        let half_turn = along.mul(dt).mul(L::splat(0.5));
+        let spring = grown.sub_scaled(along, normal).add_scaled(half_turn, tangent.normal_rate);
+
+        let force = spring.scale(L::splat(self.kt));
+        let bound = L::splat(self.mu).mul(elastic);
+        let square = force.dot(force);
+        let sliding = bound.mul(bound).less(square);
+        let (spring, force) = if L::any(sliding) {
+            let shrink = L::select(sliding, bound.div(square.sqrt()), L::splat(1.0));
+            (spring.scale(shrink), force.scale(shrink))
+        } else {
+            (spring, force)
+        };
+        let (spring, force) = (spring.keep(active), force.keep(active));
+        // SAFETY: as above.
+        unsafe { spring.store(memory) };
+        force
+    }
+    fn stiffness(&self) -> f64 {
+        self.kt
+    }
+    fn bound(&self, elastic: f64) -> f64 {
+        self.mu * elastic
+    }
+}

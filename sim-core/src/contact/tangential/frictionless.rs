@@ -1,0 +1,35 @@
+//! No friction: no tangential force, no spins, no memory.
+
+use super::{Tangent, Tangential};
+use crate::contact::PairGeometry;
+use crate::lane::Lane;
+use crate::space::{Space, Vector};
+
+/// The null tangential law.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Frictionless;
+
+impl<S: Space> Tangential<S> for Frictionless {
+    const SLOTS: usize = 0;
+    const NEEDS_SPIN: bool = false;
+    const NAME: &'static str = "";
+
+    #[inline(always)]
+    unsafe fn force<L: Lane>(
+        &self,
+        _: &PairGeometry<S, L>,
+        _: &Tangent<S, L>,
+        _: L,
+        _: L::Mask,
+        _: L,
+        _: *mut f64,
+    ) -> S::Vector<L> {
+        S::Vector::zero()
+    }
+    fn stiffness(&self) -> f64 {
+        0.0
+    }
+    fn bound(&self, _: f64) -> f64 {
+        0.0
+    }
+}

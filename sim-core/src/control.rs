@@ -1,0 +1,5 @@
+//! What drives a sample.
+
+mod servo_walls;
+
+pub use servo_walls::ServoWalls;

@@ -1,0 +1,218 @@
+//! The particle system: parameters, state and lists, put together.
+
+use std::marker::PhantomData;
+
+use super::kernel::{Pass, Path};
+use super::motion::DragRates;
+use super::{Drag, InitialState};
+use crate::boundary::Boundary;
+use crate::contact::ContactLaw;
+use crate::control::ServoWalls;
+use crate::neighbour::CellList;
+use crate::space::Space;
+use crate::state::{Body, Chunk, Force, Grains, chunk_bounds};
+
+/// A discrete element system: space, sizes, boundary and law chosen at compile time.
+pub struct Dem<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
+    // Parameters.
+    pub(super) law: C,
+    pub(super) wall_law: C,
+    pub(super) path: Path,
+    pub(super) threads: usize,
+    // State.
+    pub(super) grains: G,
+    pub(super) boundary: B,
+    pub(super) walls: Option<ServoWalls>,
+    pub(super) step: u64,
+    pub(super) dt: f64,
+    pub(super) time: f64,
+    /// By slot.
+    pub(super) bodies: Vec<Body>,
+    /// Original number of the particle in each slot.
+    pub(super) original: Vec<u32>,
+    pub(super) drag: Drag,
+    /// Rates by slot when the drag differs between particles.
+    pub(super) drag_by_slot: Vec<f64>,
+    // Lists and scratch: none of it changes a bit of the trajectory.
+    pub(super) forces: Vec<Force>,
+    pub(super) chunks: Vec<Chunk>,
+    pub(super) lists: Lists,
+    pub(super) space: PhantomData<S>,
+}
+
+/// Validity of the neighbour lists.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Lists {
+    /// Positions when the near pairs were found [d].
+    pub near_at: Vec<[f64; 3]>,
+    /// Displacement each particle may make before the next refresh [d], by slot.
+    pub budget: Vec<f64>,
+    /// Displacement each wall may make before the next refresh [d].
+    pub wall_budget: [f64; 6],
+    /// Largest share of a budget that may be used up.
+    pub used: f64,
+    pub cells: CellList,
+    pub rebuilds: u64,
+    pub refreshes: u64,
+}
+
+impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
+    /// A system at rest in its lists, at step 0; velocities of `initial` are those of t = 0.
+    #[expect(clippy::too_many_arguments, reason = "the parts of a system, each of its own type")]
+    pub(super) fn new(
+        law: C,
+        wall_law: C,
+        grains: G,
+        boundary: B,
+        walls: Option<ServoWalls>,
+        initial: &InitialState,
+        dt: f64,
+        path: Path,
+        threads: usize,
+    ) -> Self {
+        let row = |v: &[f64; 3]| [v[0], v[1], v[2], 0.0];
+        let bodies = (0..initial.positions.len())
+            .map(|i| Body {
+                position: row(&initial.positions[i]),
+                velocity: row(&initial.velocities[i]),
+                spin: if C::NEEDS_SPIN { row(&initial.spins[i]) } else { [0.0; 4] },
+            })
+            .collect::<Vec<_>>();
+        let original = (0..bodies.len() as u32).collect();
+        let mut dem =
+            Self::assemble(law, wall_law, grains, boundary, walls, bodies, original, dt, path, threads);
+        dem.sort();
+        dem.start_at_half_step();
+        dem
+    }
+
+    /// A system from its parts, without lists.
+    #[expect(clippy::too_many_arguments, reason = "the parts of a system, each of its own type")]
+    pub(super) fn assemble(
+        law: C,
+        wall_law: C,
+        grains: G,
+        boundary: B,
+        walls: Option<ServoWalls>,
+        bodies: Vec<Body>,
+        original: Vec<u32>,
+        dt: f64,
+        path: Path,
+        threads: usize,
+    ) -> Self {
+        let bounds = chunk_bounds(bodies.len());
+        let chunks: Vec<Chunk> =
+            bounds.windows(2).map(|bound| Chunk::new(bound[0], bound[1], C::SLOTS)).collect();
+        Self {
+            law,
+            wall_law,
+            path,
+            threads: threads.clamp(1, chunks.len()),
+            grains,
+            boundary,
+            walls,
+            step: 0,
+            dt,
+            time: 0.0,
+            forces: vec![Force::default(); bodies.len()],
+            original,
+            bodies,
+            drag: Drag::None,
+            drag_by_slot: Vec::new(),
+            chunks,
+            lists: Lists::default(),
+            space: PhantomData,
+        }
+    }
+
+    /// Number of particles.
+    pub(super) fn len(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// The force pass over the present state.
+    pub(super) fn pass(&self, forces: *mut Force) -> Pass<'_, S, G, B, C> {
+        Pass {
+            law: &self.law,
+            wall_law: &self.wall_law,
+            grains: &self.grains,
+            boundary: &self.boundary,
+            walls: self.walls.as_ref(),
+            bodies: self.bodies.as_ptr(),
+            forces,
+            dt: self.dt,
+            space: PhantomData,
+        }
+    }
+
+    pub(super) fn drag_rates(&self) -> DragRates<'_> {
+        match &self.drag {
+            Drag::None => DragRates::None,
+            Drag::All(rate) => DragRates::All(*rate),
+            Drag::Each(_) => DragRates::Each(&self.drag_by_slot),
+        }
+    }
+
+    /// Brings the rates of drag into slot order.
+    pub(super) fn order_drag(&mut self) {
+        if let Drag::Each(rates) = &self.drag {
+            self.drag_by_slot = self.original.iter().map(|&particle| rates[particle as usize]).collect();
+        } else {
+            self.drag_by_slot.clear();
+        }
+    }
+
+    /// Turns velocities of t_n into those of t_n − dt/2 (at the start).
+    fn start_at_half_step(&mut self) {
+        // With dt = 0 the scheme evaluates the law at the instant itself.
+        let dt = std::mem::replace(&mut self.dt, 0.0);
+        let now = self.probe();
+        self.dt = dt;
+        for (slot, body) in self.bodies.iter_mut().enumerate() {
+            let force = &now.forces[slot];
+            for axis in 0..3 {
+                body.velocity[axis] -= 0.5 * dt * force.force[axis] * self.grains.inverse_mass(slot);
+                body.spin[axis] -= 0.5 * dt * force.torque[axis] * self.grains.inverse_inertia(slot);
+            }
+        }
+        if let Some(walls) = &mut self.walls {
+            for wall in 0..6 {
+                walls.velocity[wall] -= 0.5 * dt * walls.acceleration(wall, now.wall_force[wall]);
+            }
+        }
+        self.refresh();
+    }
+
+    /// Changes the time step, keeping the velocities of t_n.
+    pub(super) fn change_dt(&mut self, dt: f64) {
+        if dt.to_bits() == self.dt.to_bits() {
+            return;
+        }
+        let now = self.probe();
+        let shift = 0.5 * (self.dt - dt);
+        for (slot, body) in self.bodies.iter_mut().enumerate() {
+            let force = &now.forces[slot];
+            for axis in 0..3 {
+                body.velocity[axis] += shift * force.force[axis] * self.grains.inverse_mass(slot);
+                body.spin[axis] += shift * force.torque[axis] * self.grains.inverse_inertia(slot);
+            }
+        }
+        if let Some(walls) = &mut self.walls {
+            for wall in 0..6 {
+                walls.velocity[wall] += shift * walls.acceleration(wall, now.wall_force[wall]);
+            }
+        }
+        // Rates remembered by dashpots belong to the old step.
+        for chunk in &mut self.chunks {
+            for list in [&mut chunk.inner, &mut chunk.outer].into_iter().chain(&mut chunk.walls) {
+                for k in 0..list.count {
+                    for slot in 0..C::TANGENTIAL_SLOT {
+                        *list.slot_mut(k, slot) = C::vacant(slot);
+                    }
+                }
+            }
+        }
+        self.dt = dt;
+        self.refresh();
+    }
+}

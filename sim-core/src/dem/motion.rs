@@ -1,0 +1,144 @@
+//! Motion of the particles of a chunk: v(t+dt/2) = v(t−dt/2) + dt a(t), x(t+dt) = x(t) + dt v(t+dt/2), the velocity
+//! Verlet scheme with velocities kept at half steps; one fused pass that also clears the forces.
+
+use super::kernel::Path;
+use crate::state::{Body, Force, Grains};
+
+/// Rates of drag by slot.
+#[derive(Clone, Copy)]
+pub enum DragRates<'a> {
+    /// None.
+    None,
+    /// The same for all [1/τ].
+    All(f64),
+    /// By slot [1/τ].
+    Each(&'a [f64]),
+}
+
+/// Moves the bodies of a chunk (`first` is the slot of the first one); returns the largest |v component| over
+/// displacement budget [1/τ].
+///
+/// # Safety
+/// `path` was chosen by [`Path::choose`] on this machine.
+pub unsafe fn advance<G: Grains, const SPIN: bool>(
+    path: Path,
+    bodies: &mut [Body],
+    forces: &mut [Force],
+    first: usize,
+    grains: &G,
+    drag: DragRates<'_>,
+    dt: f64,
+) -> f64 {
+    // SAFETY: the path was detected.
+    unsafe {
+        match path {
+            Path::Plain => plain::<G, SPIN>(bodies, forces, first, grains, drag, dt),
+            #[cfg(target_arch = "x86_64")]
+            Path::PlainFma => plain_fma::<G, SPIN>(bodies, forces, first, grains, drag, dt),
+            #[cfg(target_arch = "x86_64")]
+            Path::Avx2 => avx2::<G, SPIN>(bodies, forces, first, grains, drag, dt),
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "fma")]
+fn plain_fma<G: Grains, const SPIN: bool>(
+    bodies: &mut [Body],
+    forces: &mut [Force],
+    first: usize,
+    grains: &G,
+    drag: DragRates<'_>,
+    dt: f64,
+) -> f64 {
+    plain::<G, SPIN>(bodies, forces, first, grains, drag, dt)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn avx2<G: Grains, const SPIN: bool>(
+    bodies: &mut [Body],
+    forces: &mut [Force],
+    first: usize,
+    grains: &G,
+    drag: DragRates<'_>,
+    dt: f64,
+) -> f64 {
+    plain::<G, SPIN>(bodies, forces, first, grains, drag, dt)
+}
+
+#[inline(always)]
+fn plain<G: Grains, const SPIN: bool>(
+    bodies: &mut [Body],
+    forces: &mut [Force],
+    first: usize,
+    grains: &G,
+    drag: DragRates<'_>,
+    dt: f64,
+) -> f64 {
+    match drag {
+        DragRates::None => free::<G, SPIN>(bodies, forces, first, grains, dt),
+        DragRates::All(rate) => dragged::<G, SPIN>(bodies, forces, first, grains, dt, |_| rate),
+        DragRates::Each(rates) => dragged::<G, SPIN>(bodies, forces, first, grains, dt, |slot| rates[slot]),
+    }
+}
+
+#[inline(always)]
+fn free<G: Grains, const SPIN: bool>(
+    bodies: &mut [Body],
+    forces: &mut [Force],
+    first: usize,
+    grains: &G,
+    dt: f64,
+) -> f64 {
+    let mut rush = [0.0_f64; 4];
+    for (k, (body, force)) in bodies.iter_mut().zip(forces).enumerate() {
+        let per_mass = dt * grains.inverse_mass(first + k);
+        let per_inertia = dt * grains.inverse_inertia(first + k);
+        let inverse_budget = body.position[3];
+        for c in 0..4 {
+            body.velocity[c] = force.force[c].mul_add(per_mass, body.velocity[c]);
+            body.position[c] = body.velocity[c].mul_add(dt, body.position[c]);
+            let hurry = body.velocity[c].abs() * inverse_budget;
+            rush[c] = if hurry > rush[c] { hurry } else { rush[c] };
+        }
+        if SPIN {
+            for c in 0..4 {
+                body.spin[c] = force.torque[c].mul_add(per_inertia, body.spin[c]);
+            }
+        }
+        *force = Force::default();
+    }
+    rush[0].max(rush[1]).max(rush[2])
+}
+
+/// v(t+dt/2) = [v(t−dt/2)(1 − γ dt/2) + dt a]/(1 + γ dt/2): drag centred at t, second order.
+#[inline(always)]
+fn dragged<G: Grains, const SPIN: bool>(
+    bodies: &mut [Body],
+    forces: &mut [Force],
+    first: usize,
+    grains: &G,
+    dt: f64,
+    rate: impl Fn(usize) -> f64,
+) -> f64 {
+    let mut rush = 0.0_f64;
+    for (k, (body, force)) in bodies.iter_mut().zip(forces).enumerate() {
+        let half = 0.5 * dt * rate(first + k);
+        let (keep, share) = ((1.0 - half) / (1.0 + half), dt / (1.0 + half));
+        let per_mass = share * grains.inverse_mass(first + k);
+        let per_inertia = share * grains.inverse_inertia(first + k);
+        let inverse_budget = body.position[3];
+        for c in 0..3 {
+            body.velocity[c] = force.force[c].mul_add(per_mass, keep * body.velocity[c]);
+            body.position[c] = body.velocity[c].mul_add(dt, body.position[c]);
+            let hurry = body.velocity[c].abs() * inverse_budget;
+            rush = if hurry > rush { hurry } else { rush };
+            if SPIN {
+                body.spin[c] = force.torque[c].mul_add(per_inertia, keep * body.spin[c]);
+            }
+        }
+        *force = Force::default();
+    }
+    rush
+}

@@ -1,0 +1,205 @@
+//! One step as a list of phases, and the loop over steps on one or several threads.
+
+use super::Fault;
+use super::engine::Dem;
+use super::lists::{SORT_EVERY, speed};
+use super::motion::advance;
+use super::threads::{Barrier, Shared};
+use crate::boundary::Boundary;
+use crate::contact::ContactLaw;
+use crate::space::Space;
+use crate::state::Grains;
+
+/// Steps between two looks at whether the state is still sane.
+const LOOK_EVERY: u64 = 64;
+
+/// Largest distance a particle or wall may move in a step [d].
+const FASTEST: f64 = 0.25;
+
+impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
+    /// Does `steps` steps.
+    pub(super) fn advance_steps(&mut self, steps: u64) -> Result<(), Fault> {
+        let threads = self.threads.min(self.chunks.len());
+        if threads <= 1 {
+            for _ in 0..steps {
+                for chunk in 0..self.chunks.len() {
+                    // SAFETY: this thread has the system to itself.
+                    unsafe { Self::force_phase(&raw mut *self, chunk) };
+                }
+                for chunk in 0..self.chunks.len() {
+                    // SAFETY: as above.
+                    unsafe { Self::motion_phase(&raw mut *self, chunk) };
+                }
+                self.serial_phase()?;
+            }
+            return Ok(());
+        }
+        self.advance_together(steps, threads)
+    }
+
+    /// Phase 1: contact forces of one chunk.
+    ///
+    /// # Safety
+    /// No other thread works on this chunk; nobody moves bodies, walls or lists meanwhile.
+    unsafe fn force_phase(dem: *mut Self, chunk: usize) {
+        // SAFETY: fields are reached one by one through the raw pointer; only this chunk is borrowed mutably, and
+        // only forces of its own particles are written.
+        unsafe {
+            let shared = &*dem;
+            let forces = shared.forces.as_ptr().cast_mut();
+            let own = (&raw mut (*dem).chunks).cast::<Vec<crate::state::Chunk>>();
+            let own = (*own).as_mut_ptr().add(chunk);
+            shared.pass(forces).run(shared.path, &mut *own);
+        }
+    }
+
+    /// Phase 2: adds the ghosts of earlier chunks, then moves the particles of one chunk.
+    ///
+    /// # Safety
+    /// The force phase of all chunks is over; no other thread works on this chunk.
+    unsafe fn motion_phase(dem: *mut Self, chunk: usize) {
+        // SAFETY: only bodies and forces of this chunk are written; ghosts are read.
+        unsafe {
+            let shared = &*dem;
+            let (start, end) = (shared.chunks[chunk].start, shared.chunks[chunk].end);
+            let forces = shared.forces.as_ptr().cast_mut();
+            let bodies = shared.bodies.as_ptr().cast_mut();
+            for &(from, place, particle) in &shared.chunks[chunk].incoming {
+                let ghost = &shared.chunks[from as usize].ghosts.forces[place as usize];
+                let force = &mut *forces.add(particle as usize);
+                for k in 0..3 {
+                    force.force[k] += ghost.force[k];
+                    force.torque[k] += ghost.torque[k];
+                }
+            }
+            let bodies = std::slice::from_raw_parts_mut(bodies.add(start), end - start);
+            let forces = std::slice::from_raw_parts_mut(forces.add(start), end - start);
+            let (grains, drag, dt) = (&shared.grains, shared.drag_rates(), shared.dt);
+            let rush = if C::NEEDS_SPIN {
+                advance::<G, true>(shared.path, bodies, forces, start, grains, drag, dt)
+            } else {
+                advance::<G, false>(shared.path, bodies, forces, start, grains, drag, dt)
+            };
+            let own = shared.chunks.as_ptr().cast_mut().add(chunk);
+            (*own).rush = rush;
+        }
+    }
+
+    /// Phase 3, one thread: moves the walls, counts the step, looks after the lists.
+    fn serial_phase(&mut self) -> Result<(), Fault> {
+        let dt = self.dt;
+        let mut rush = self.chunks.iter().map(|chunk| chunk.rush).fold(0.0, f64::max) * 3.0_f64.sqrt();
+        if let Some(walls) = &mut self.walls {
+            let mut force = [0.0; 6];
+            for chunk in &self.chunks {
+                for (sum, part) in force.iter_mut().zip(chunk.wall_force) {
+                    *sum += part;
+                }
+            }
+            walls.advance(force, dt);
+            for wall in 0..6 {
+                rush = rush.max(walls.velocity[wall].abs() / self.lists.wall_budget[wall]);
+            }
+        }
+        self.step += 1;
+        self.time += dt;
+        if self.step.is_multiple_of(LOOK_EVERY) {
+            self.look()?;
+        }
+        self.lists.used += rush * dt;
+        if self.step.is_multiple_of(SORT_EVERY) {
+            self.look()?;
+            self.sort();
+        } else if self.lists.used + 0.5 * rush * dt >= 1.0 {
+            // The half step: a pair still apart by half a step's travel already has a share of the step in contact.
+            if rush.is_finite() {
+                self.refresh();
+            } else {
+                self.look()?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the state makes sense.
+    pub(super) fn look(&self) -> Result<(), Fault> {
+        let fault = |what: String| Err(Fault { step: self.step, what });
+        for (slot, body) in self.bodies.iter().enumerate() {
+            let (x, v, w) = (&body.position, &body.velocity, &body.spin);
+            if !(0..3).all(|k| x[k].is_finite() && v[k].is_finite() && w[k].is_finite()) {
+                return fault(format!("particle {} is not finite", self.original[slot]));
+            }
+            let travel = speed(body) * self.dt;
+            if travel > FASTEST {
+                return fault(format!("particle {} moves {travel:.3e} d in a step", self.original[slot]));
+            }
+            if let Some(walls) = &self.walls {
+                for axis in 0..3 {
+                    let beyond =
+                        (walls.position[2 * axis] - x[axis]).max(x[axis] - walls.position[2 * axis + 1]);
+                    if beyond > 1.0 {
+                        return fault(format!(
+                            "particle {} is {beyond:.3e} d outside the walls",
+                            self.original[slot]
+                        ));
+                    }
+                }
+            }
+        }
+        if let Some(walls) = &self.walls {
+            for wall in 0..6 {
+                if !walls.position[wall].is_finite() || !walls.velocity[wall].is_finite() {
+                    return fault(format!("wall {wall} is not finite"));
+                }
+                let travel = walls.velocity[wall].abs() * self.dt;
+                if travel > FASTEST {
+                    return fault(format!("wall {wall} moves {travel:.3e} d in a step"));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The loop on several threads: chunks are dealt out once, phases are separated by barriers.
+    fn advance_together(&mut self, steps: u64, threads: usize) -> Result<(), Fault> {
+        let barrier = Barrier::new(threads);
+        let chunks = self.chunks.len();
+        let shared = Shared::new(&raw mut *self);
+        let work = |thread: usize| -> Result<(), Fault> {
+            let _poison = barrier.poison_on_panic();
+            let mine = chunks * thread / threads..chunks * (thread + 1) / threads;
+            let mut outcome = Ok(());
+            for _ in 0..steps {
+                for chunk in mine.clone() {
+                    // SAFETY: chunks are dealt out without overlap; the barriers separate the phases.
+                    unsafe { Self::force_phase(shared.get(), chunk) };
+                }
+                barrier.wait();
+                for chunk in mine.clone() {
+                    // SAFETY: as above.
+                    unsafe { Self::motion_phase(shared.get(), chunk) };
+                }
+                barrier.wait();
+                if thread == 0 {
+                    // SAFETY: the other threads wait at the next barrier.
+                    outcome = unsafe { (*shared.get()).serial_phase() };
+                    if outcome.is_err() {
+                        barrier.stop();
+                    }
+                }
+                barrier.wait();
+                if barrier.stopped() {
+                    break;
+                }
+            }
+            outcome
+        };
+        std::thread::scope(|scope| {
+            for thread in 1..threads {
+                let work = &work;
+                scope.spawn(move || work(thread));
+            }
+            work(0)
+        })
+    }
+}

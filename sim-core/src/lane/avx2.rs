@@ -1,0 +1,262 @@
+//! Four numbers at a time with AVX2 and FMA.
+//!
+//! Every method is `#[inline(always)]` without target features of its own, so it melts into a caller that enables
+//! them; only functions with `#[target_feature(enable = "avx2,fma")]` may use this type (a value of it must only
+//! be made after the features were detected).
+
+use std::arch::x86_64::{
+    __m256d, _CMP_LT_OQ, _mm256_add_pd, _mm256_and_pd, _mm256_andnot_pd, _mm256_blendv_pd, _mm256_cmp_pd,
+    _mm256_div_pd, _mm256_fmadd_pd, _mm256_fnmadd_pd, _mm256_load_pd, _mm256_loadu_pd, _mm256_max_pd,
+    _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_permute2f128_pd, _mm256_set1_pd,
+    _mm256_setzero_pd, _mm256_sqrt_pd, _mm256_store_pd, _mm256_storeu_pd, _mm256_sub_pd, _mm256_unpackhi_pd,
+    _mm256_unpacklo_pd,
+};
+
+use super::{Lane, OPPOSITE, OTHER};
+use crate::state::{Body, Force};
+
+/// Four doubles in one register.
+#[derive(Clone, Copy)]
+pub struct Avx2(__m256d);
+
+/// Doubles per body record and per force record.
+const ROW: usize = 4;
+
+impl Avx2 {
+    /// Address of a record of a body.
+    #[inline(always)]
+    unsafe fn row<const FIELD: usize>(bodies: *const Body, index: u32) -> *const f64 {
+        // SAFETY: a body is three rows of four doubles; the caller vouches for the index.
+        unsafe { bodies.add(index as usize).cast::<f64>().add(FIELD * ROW) }
+    }
+
+    /// Four rows to three columns (the fourth is not used).
+    #[inline(always)]
+    fn columns(r0: __m256d, r1: __m256d, r2: __m256d, r3: __m256d) -> [Self; 3] {
+        // SAFETY: values of this type only exist where AVX2 was detected.
+        unsafe {
+            let lo01 = _mm256_unpacklo_pd(r0, r1); // x0 x1 z0 z1
+            let hi01 = _mm256_unpackhi_pd(r0, r1); // y0 y1 w0 w1
+            let lo23 = _mm256_unpacklo_pd(r2, r3);
+            let hi23 = _mm256_unpackhi_pd(r2, r3);
+            [
+                Self(_mm256_permute2f128_pd::<0x20>(lo01, lo23)),
+                Self(_mm256_permute2f128_pd::<0x20>(hi01, hi23)),
+                Self(_mm256_permute2f128_pd::<0x31>(lo01, lo23)),
+            ]
+        }
+    }
+
+    /// Three columns to four rows, fourth component +0.
+    #[inline(always)]
+    fn rows(value: [Self; 3]) -> [__m256d; 4] {
+        // SAFETY: values of this type only exist where AVX2 was detected.
+        unsafe {
+            let zero = _mm256_setzero_pd();
+            let lo_xy = _mm256_unpacklo_pd(value[0].0, value[1].0); // x0 y0 x2 y2
+            let hi_xy = _mm256_unpackhi_pd(value[0].0, value[1].0); // x1 y1 x3 y3
+            let lo_z = _mm256_unpacklo_pd(value[2].0, zero);
+            let hi_z = _mm256_unpackhi_pd(value[2].0, zero);
+            [
+                _mm256_permute2f128_pd::<0x20>(lo_xy, lo_z),
+                _mm256_permute2f128_pd::<0x20>(hi_xy, hi_z),
+                _mm256_permute2f128_pd::<0x31>(lo_xy, lo_z),
+                _mm256_permute2f128_pd::<0x31>(hi_xy, hi_z),
+            ]
+        }
+    }
+}
+
+impl Lane for Avx2 {
+    type Mask = Self;
+    const WIDTH: usize = 4;
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        // SAFETY: only called where AVX2 was detected.
+        Self(unsafe { _mm256_set1_pd(value) })
+    }
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        // SAFETY: as for `splat`; so for every method below.
+        Self(unsafe { _mm256_add_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        // SAFETY: see `add`.
+        Self(unsafe { _mm256_sub_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        // SAFETY: see `add`.
+        Self(unsafe { _mm256_mul_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        // SAFETY: see `add`.
+        Self(unsafe { _mm256_div_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        // SAFETY: see `add`.
+        Self(unsafe { _mm256_fmadd_pd(self.0, factor.0, addend.0) })
+    }
+    #[inline(always)]
+    fn neg_mul_add(self, factor: Self, addend: Self) -> Self {
+        // SAFETY: see `add`.
+        Self(unsafe { _mm256_fnmadd_pd(self.0, factor.0, addend.0) })
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: see `add`.
+        Self(unsafe { _mm256_sqrt_pd(self.0) })
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: see `add`.
+        Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        // SAFETY: see `add`.
+        Self(unsafe { _mm256_max_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        // SAFETY: see `add`.
+        Self(unsafe { _mm256_min_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> Self {
+        // SAFETY: see `add`.
+        Self(unsafe { _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn select(mask: Self, yes: Self, no: Self) -> Self {
+        // SAFETY: see `add`.
+        Self(unsafe { _mm256_blendv_pd(no.0, yes.0, mask.0) })
+    }
+    #[inline(always)]
+    fn keep(self, mask: Self) -> Self {
+        // SAFETY: see `add`.
+        Self(unsafe { _mm256_and_pd(self.0, mask.0) })
+    }
+    #[inline(always)]
+    fn both(a: Self, b: Self) -> Self {
+        // SAFETY: see `add`.
+        Self(unsafe { _mm256_and_pd(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn any(mask: Self) -> bool {
+        // SAFETY: see `add`.
+        unsafe { _mm256_movemask_pd(mask.0) != 0 }
+    }
+
+    #[inline(always)]
+    unsafe fn load(from: *const f64) -> Self {
+        // SAFETY: the caller vouches for four readable numbers.
+        Self(unsafe { _mm256_loadu_pd(from) })
+    }
+    #[inline(always)]
+    unsafe fn store(self, to: *mut f64) {
+        // SAFETY: the caller vouches for four writable numbers.
+        unsafe { _mm256_storeu_pd(to, self.0) }
+    }
+
+    #[inline(always)]
+    unsafe fn difference<const FIELD: usize>(bodies: *const Body, a: *const u32, b: *const u32) -> [Self; 3] {
+        // SAFETY: the caller vouches for the indices; records are 32-byte aligned.
+        unsafe {
+            let r0 = _mm256_sub_pd(
+                _mm256_load_pd(Self::row::<FIELD>(bodies, *b.add(0))),
+                _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(0))),
+            );
+            let r1 = _mm256_sub_pd(
+                _mm256_load_pd(Self::row::<FIELD>(bodies, *b.add(1))),
+                _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(1))),
+            );
+            let r2 = _mm256_sub_pd(
+                _mm256_load_pd(Self::row::<FIELD>(bodies, *b.add(2))),
+                _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(2))),
+            );
+            let r3 = _mm256_sub_pd(
+                _mm256_load_pd(Self::row::<FIELD>(bodies, *b.add(3))),
+                _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(3))),
+            );
+            Self::columns(r0, r1, r2, r3)
+        }
+    }
+    #[inline(always)]
+    unsafe fn sum<const FIELD: usize>(bodies: *const Body, a: *const u32, b: *const u32) -> [Self; 3] {
+        // SAFETY: the caller vouches for the indices; records are 32-byte aligned.
+        unsafe {
+            let r0 = _mm256_add_pd(
+                _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(0))),
+                _mm256_load_pd(Self::row::<FIELD>(bodies, *b.add(0))),
+            );
+            let r1 = _mm256_add_pd(
+                _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(1))),
+                _mm256_load_pd(Self::row::<FIELD>(bodies, *b.add(1))),
+            );
+            let r2 = _mm256_add_pd(
+                _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(2))),
+                _mm256_load_pd(Self::row::<FIELD>(bodies, *b.add(2))),
+            );
+            let r3 = _mm256_add_pd(
+                _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(3))),
+                _mm256_load_pd(Self::row::<FIELD>(bodies, *b.add(3))),
+            );
+            Self::columns(r0, r1, r2, r3)
+        }
+    }
+    #[inline(always)]
+    unsafe fn record<const FIELD: usize>(bodies: *const Body, a: *const u32) -> [Self; 3] {
+        // SAFETY: the caller vouches for the indices; records are 32-byte aligned.
+        unsafe {
+            let r0 = _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(0)));
+            let r1 = _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(1)));
+            let r2 = _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(2)));
+            let r3 = _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(3)));
+            Self::columns(r0, r1, r2, r3)
+        }
+    }
+    #[inline(always)]
+    unsafe fn scatter<const FIELD: usize>(forces: *mut Force, at: *const u32, value: [Self; 3]) {
+        let rows = Self::rows(value);
+        // SAFETY: the caller vouches for the indices; a force is two aligned rows of four doubles.
+        unsafe {
+            for lane in 0..4 {
+                let row = rows[lane];
+                let to = forces.add(*at.add(lane) as usize).cast::<f64>().add(FIELD * ROW);
+                _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), row));
+            }
+        }
+    }
+    #[inline(always)]
+    unsafe fn scatter_pair<const FIELD: usize, const MODE: u8>(
+        of_a: *mut Force,
+        a: *const u32,
+        of_b: *mut Force,
+        b: *const u32,
+        value: [Self; 3],
+        other: [Self; 3],
+    ) {
+        let rows = Self::rows(value);
+        let others = if MODE == OTHER { Self::rows(other) } else { rows };
+        // SAFETY: the caller vouches for the indices; a force is two aligned rows of four doubles.
+        unsafe {
+            for lane in 0..4 {
+                let row = rows[lane];
+                let to = of_a.add(*a.add(lane) as usize).cast::<f64>().add(FIELD * ROW);
+                _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), row));
+                let to = of_b.add(*b.add(lane) as usize).cast::<f64>().add(FIELD * ROW);
+                let sum = _mm256_load_pd(to);
+                let on_b = others[lane];
+                _mm256_store_pd(
+                    to,
+                    if MODE == OPPOSITE { _mm256_sub_pd(sum, on_b) } else { _mm256_add_pd(sum, on_b) },
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,138 @@
+//! One number at a time: the plain path, lane for lane the arithmetic of the vector path.
+
+use super::{Lane, OPPOSITE, SAME};
+use crate::state::{Body, Force};
+
+impl Lane for f64 {
+    type Mask = bool;
+    const WIDTH: usize = 1;
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        value
+    }
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self + other
+    }
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self - other
+    }
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        self * other
+    }
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        self / other
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        f64::mul_add(self, factor, addend)
+    }
+    #[inline(always)]
+    fn neg_mul_add(self, factor: Self, addend: Self) -> Self {
+        f64::mul_add(-self, factor, addend)
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        f64::sqrt(self)
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        f64::abs(self)
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> bool {
+        self < other
+    }
+    #[inline(always)]
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
+    }
+    #[inline(always)]
+    fn keep(self, mask: bool) -> Self {
+        if mask { self } else { 0.0 }
+    }
+    #[inline(always)]
+    fn both(a: bool, b: bool) -> bool {
+        a && b
+    }
+    #[inline(always)]
+    fn any(mask: bool) -> bool {
+        mask
+    }
+
+    #[inline(always)]
+    unsafe fn load(from: *const f64) -> Self {
+        // SAFETY: the caller vouches for one readable number.
+        unsafe { *from }
+    }
+    #[inline(always)]
+    unsafe fn store(self, to: *mut f64) {
+        // SAFETY: the caller vouches for one writable number.
+        unsafe { *to = self }
+    }
+
+    #[inline(always)]
+    unsafe fn difference<const FIELD: usize>(bodies: *const Body, a: *const u32, b: *const u32) -> [Self; 3] {
+        // SAFETY: the caller vouches for the indices.
+        let (p, q) = unsafe { (Self::record::<FIELD>(bodies, a), Self::record::<FIELD>(bodies, b)) };
+        [q[0] - p[0], q[1] - p[1], q[2] - p[2]]
+    }
+    #[inline(always)]
+    unsafe fn sum<const FIELD: usize>(bodies: *const Body, a: *const u32, b: *const u32) -> [Self; 3] {
+        // SAFETY: the caller vouches for the indices.
+        let (p, q) = unsafe { (Self::record::<FIELD>(bodies, a), Self::record::<FIELD>(bodies, b)) };
+        [p[0] + q[0], p[1] + q[1], p[2] + q[2]]
+    }
+    #[inline(always)]
+    unsafe fn record<const FIELD: usize>(bodies: *const Body, a: *const u32) -> [Self; 3] {
+        // SAFETY: the caller vouches for the index.
+        let body = unsafe { &*bodies.add(*a as usize) };
+        let row = match FIELD {
+            0 => &body.position,
+            1 => &body.velocity,
+            _ => &body.spin,
+        };
+        [row[0], row[1], row[2]]
+    }
+    #[inline(always)]
+    unsafe fn scatter<const FIELD: usize>(forces: *mut Force, at: *const u32, value: [Self; 3]) {
+        // SAFETY: the caller vouches for the index and for exclusive access.
+        let force = unsafe { &mut *forces.add(*at as usize) };
+        let row = if FIELD == 0 { &mut force.force } else { &mut force.torque };
+        for axis in 0..3 {
+            row[axis] += value[axis];
+        }
+    }
+    #[inline(always)]
+    unsafe fn scatter_pair<const FIELD: usize, const MODE: u8>(
+        of_a: *mut Force,
+        a: *const u32,
+        of_b: *mut Force,
+        b: *const u32,
+        value: [Self; 3],
+        other: [Self; 3],
+    ) {
+        let on_b = match MODE {
+            OPPOSITE => [-value[0], -value[1], -value[2]],
+            SAME => value,
+            _ => other,
+        };
+        // SAFETY: the caller vouches for the indices; the two references do not live at the same time.
+        unsafe {
+            Self::scatter::<FIELD>(of_a, a, value);
+            Self::scatter::<FIELD>(of_b, b, on_b);
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! Fixed chunks of particles: the unit of work of a thread, and what makes any number of threads give the same bits.
+//!
+//! A chunk owns a range of particles and the contacts whose lower index lies in it. Contacts inside the range are
+//! summed in list order. Contacts to a later chunk add to *ghost* forces of this chunk, which the later chunk adds
+//! to its own in the order of chunks. The chunks depend on the number of particles alone, so sums do not depend on
+//! who computes them.
+
+use super::{ContactList, Force, WallList};
+
+/// Particles per chunk aimed at. Part of the definition of the result (order of sums): changing it changes bits.
+const CHUNK: usize = 2300;
+
+/// First particle of every chunk, and the end.
+#[must_use]
+pub fn chunk_bounds(particles: usize) -> Vec<usize> {
+    let chunks = (particles / CHUNK).max(1);
+    (0..=chunks).map(|c| particles * c / chunks).collect()
+}
+
+/// Forces a chunk exerts on particles of later chunks.
+#[derive(Clone, Debug, Default)]
+pub struct Ghosts {
+    /// The particles, ascending.
+    pub particles: Vec<u32>,
+    /// What they feel from this chunk.
+    pub forces: Vec<Force>,
+    /// Place in `particles` of b of every outer contact, in groups of four.
+    pub targets: Vec<[u32; 4]>,
+}
+
+/// One chunk: its particles are `start..end`.
+#[derive(Clone, Debug, Default)]
+pub struct Chunk {
+    /// First particle.
+    pub start: usize,
+    /// One past the last particle.
+    pub end: usize,
+    /// Contacts with both particles in the chunk.
+    pub inner: ContactList,
+    /// Contacts with b in a later chunk.
+    pub outer: ContactList,
+    /// Ghosts of the outer contacts.
+    pub ghosts: Ghosts,
+    /// Ghosts of earlier chunks that lie in this one: (chunk, place in its ghosts, particle).
+    pub incoming: Vec<(u32, u32, u32)>,
+    /// Contacts with each wall.
+    pub walls: [WallList; 6],
+    /// Force of the particles of this chunk on each wall, positive outwards [k_n d].
+    pub wall_force: [f64; 6],
+    /// Neighbours of particle `start + k`: `near[near_start[k]..near_start[k + 1]]`, ascending, above the particle.
+    pub near_start: Vec<u32>,
+    /// See `near_start`.
+    pub near: Vec<u32>,
+    /// Largest |v component| / displacement budget in the last step [1/τ].
+    pub rush: f64,
+    /// Storage for the next lists, swapped at a refresh.
+    pub spare: [ContactList; 2],
+}
+
+impl Chunk {
+    /// An empty chunk of particles `start..end` with contact memories of `slots`.
+    #[must_use]
+    pub fn new(start: usize, end: usize, slots: usize) -> Self {
+        Self {
+            start,
+            end,
+            inner: ContactList::new(slots),
+            outer: ContactList::new(slots),
+            walls: std::array::from_fn(|_| WallList::new(slots)),
+            spare: std::array::from_fn(|_| ContactList::new(slots)),
+            ..Self::default()
+        }
+    }
+
+    /// Bytes held.
+    #[must_use]
+    pub fn bytes(&self) -> usize {
+        self.inner.bytes()
+            + self.outer.bytes()
+            + self.spare.iter().map(ContactList::bytes).sum::<usize>()
+            + self.walls.iter().map(ContactList::bytes).sum::<usize>()
+            + (self.near.capacity() + self.near_start.capacity()) * size_of::<u32>()
+            + self.ghosts.forces.capacity() * size_of::<Force>()
+            + (self.ghosts.particles.capacity() + self.ghosts.targets.capacity() * 4) * size_of::<u32>()
+    }
+}

@@ -1,0 +1,116 @@
+//! Particle records.
+
+use crate::lane::Lane;
+
+/// Kinematics of one particle: three rows of four numbers.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(32))]
+pub struct Body {
+    /// x, y, z at t_n [d]; the fourth number is the inverse of the particle's displacement budget [1/d].
+    pub position: [f64; 4],
+    /// Velocity at t_n − dt/2 [d/τ]; the fourth number is zero.
+    pub velocity: [f64; 4],
+    /// Angular velocity at t_n − dt/2 [1/τ]; the fourth number is zero.
+    pub spin: [f64; 4],
+}
+
+/// Force and torque on one particle; fourth numbers are zero.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[repr(C, align(32))]
+pub struct Force {
+    /// Force [k_n d].
+    pub force: [f64; 4],
+    /// Torque [k_n d²].
+    pub torque: [f64; 4],
+}
+
+/// Sizes and masses of the particles.
+pub trait Grains: Send + Sync + 'static {
+    /// Whether all are equal: then both torques of a contact are equal and one register holds them.
+    const EQUAL: bool;
+
+    /// Radii of `L::WIDTH` particles [d].
+    ///
+    /// # Safety
+    /// `at` points to `L::WIDTH` valid indices.
+    unsafe fn radii<L: Lane>(&self, at: *const u32) -> L;
+    /// √ of the mass in the dashpot of pairs [√m].
+    ///
+    /// # Safety
+    /// As for [`Grains::radii`].
+    unsafe fn root_pair_mass<L: Lane>(&self, a: *const u32, b: *const u32) -> L;
+    /// √ of the mass in the dashpot of wall contacts [√m].
+    ///
+    /// # Safety
+    /// As for [`Grains::radii`].
+    unsafe fn root_wall_mass<L: Lane>(&self, a: *const u32) -> L;
+    /// Radius of one particle [d].
+    fn radius(&self, at: usize) -> f64;
+    /// Mass of one particle [m].
+    fn mass(&self, at: usize) -> f64;
+    /// Moment of inertia of one particle [m d²].
+    fn inertia(&self, at: usize) -> f64;
+    /// 1/mass of one particle, as the integrator uses it [1/m].
+    fn inverse_mass(&self, at: usize) -> f64;
+    /// 1/inertia of one particle, as the integrator uses it [1/(m d²)].
+    fn inverse_inertia(&self, at: usize) -> f64;
+    /// Largest radius [d].
+    fn largest_radius(&self) -> f64;
+    /// Follows a new order of the particles: slot k now holds what was in slot `order[k]`.
+    fn permute(&mut self, order: &[u32]);
+}
+
+/// Equal spheres with d = m = 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Equal {
+    /// √ of the mass in the dashpot of pairs [√m]: √½ with the effective mass, 1 with the particle mass.
+    pub root_pair_mass: f64,
+}
+
+impl Equal {
+    /// Radius [d].
+    pub const RADIUS: f64 = 0.5;
+    /// Moment of inertia of a solid sphere, m d²/10.
+    pub const INERTIA: f64 = 0.1;
+}
+
+impl Grains for Equal {
+    const EQUAL: bool = true;
+
+    #[inline(always)]
+    unsafe fn radii<L: Lane>(&self, _: *const u32) -> L {
+        L::splat(Self::RADIUS)
+    }
+    #[inline(always)]
+    unsafe fn root_pair_mass<L: Lane>(&self, _: *const u32, _: *const u32) -> L {
+        L::splat(self.root_pair_mass)
+    }
+    #[inline(always)]
+    unsafe fn root_wall_mass<L: Lane>(&self, _: *const u32) -> L {
+        L::splat(1.0)
+    }
+    #[inline(always)]
+    fn radius(&self, _: usize) -> f64 {
+        Self::RADIUS
+    }
+    #[inline(always)]
+    fn mass(&self, _: usize) -> f64 {
+        1.0
+    }
+    #[inline(always)]
+    fn inertia(&self, _: usize) -> f64 {
+        Self::INERTIA
+    }
+    #[inline(always)]
+    fn inverse_mass(&self, _: usize) -> f64 {
+        1.0
+    }
+    #[inline(always)]
+    fn inverse_inertia(&self, _: usize) -> f64 {
+        10.0
+    }
+    fn largest_radius(&self) -> f64 {
+        Self::RADIUS
+    }
+    fn permute(&mut self, _: &[u32]) {}
+}
