@@ -43,7 +43,7 @@ impl Run {
     pub(crate) fn new(scene: &ReducedSpheres, key: String, options: &Options) -> Result<Self, SimError> {
         let (dt_cap, dt_reason) = start::largest_dt(scene);
         let initial = start::initial_state(scene)?;
-        let dynamics = system::new(&start::parameters(scene), &initial, dt_cap, options)?;
+        let dynamics = system::new(&start::parameters(scene), &initial, dt_cap, options);
         let memory = first_memory(scene, dt_cap, dt_reason);
         let mut run = Self { scene: scene.clone(), key, options: *options, dynamics, memory };
         run.begin()?;
@@ -220,7 +220,7 @@ impl Run {
             return Err(SimError::Unstable { step, what, retried_dt: self.memory.dt_cap });
         }
         let initial = start::initial_state(&self.scene)?;
-        self.dynamics = system::new(&start::parameters(&self.scene), &initial, halved, &self.options)?;
+        self.dynamics = system::new(&start::parameters(&self.scene), &initial, halved, &self.options);
         let reason = format!("half of the time step that failed: {what}");
         let mut memory = first_memory(&self.scene, halved, reason);
         memory.retries = 1;

@@ -101,7 +101,7 @@ pub(crate) fn explain(scene: &ReducedSpheres) -> Result<Explanation, SimError> {
     let (dt, dt_reason) = largest_dt(scene);
     let (expected_steps, _) = estimate::steps(scene, dt);
     let trial = ReducedSpheres { n: scene.n.min(TRIAL), ..scene.clone() };
-    let system = system::new(&parameters(&trial), &initial_state(&trial)?, dt, &Options::default())?;
+    let system = system::new(&parameters(&trial), &initial_state(&trial)?, dt, &Options::default());
     let bytes = system.counters().bytes;
     #[expect(clippy::cast_precision_loss, reason = "an estimate")]
     let expected_seconds = expected_steps as f64 * scene.n as f64 * SECONDS_PER_PARTICLE_STEP;
