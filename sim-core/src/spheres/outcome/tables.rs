@@ -150,7 +150,7 @@ fn force_histogram(scene: &ReducedSpheres, view: &View) -> Result<Option<Table>,
     let count = real(forces.len() as u64);
     let mean = forces.iter().map(|force| force.abs()).sum::<f64>() / count.max(1.0);
     let scale = if scene.adhesion > 0.0 { scene.adhesion } else { mean };
-    if scale <= 0.0 {
+    if forces.is_empty() || scale <= 0.0 {
         return Ok(None);
     }
     let found = forces::histogram(&forces, scale);
