@@ -15,7 +15,7 @@ pub fn scene(keys: &Value) -> Reduced {
     for (key, value) in keys.as_object().expect("keys are an object") {
         all[key] = value.clone();
     }
-    Scene::from_json(&all).unwrap().reduce()
+    Scene::from_json(&all).expect("a valid scene").reduce()
 }
 
 /// Runs to the end.
@@ -27,5 +27,5 @@ pub fn run(scene: &Reduced, options: &Options) -> Result<Outcome, SimError> {
 
 /// Everything a run can tell, as text: equal text is equal bits.
 pub fn fingerprint(simulation: &dyn Simulation) -> String {
-    serde_json::to_string(&simulation.outcome().unwrap()).unwrap()
+    serde_json::to_string(&simulation.outcome().expect("an outcome")).expect("plain data")
 }
