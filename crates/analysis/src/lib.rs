@@ -8,17 +8,24 @@
 //! | `/sweeps/{id}/bonds` | [`bonds`] |
 //! | `/sweeps/{id}/forces` | [`forces`]; one packing: [`forces::distribution`](forces::distribution()) |
 //! | packing of one job | [`profile::from_table`] |
+//! | `/sweeps/{id}/consolidation` | [`discs::consolidation`](discs::consolidation()) |
+//! | `/sweeps/{id}/moduli` | [`discs::moduli`](discs::moduli()) |
+//! | `/sweeps/{id}/structure` | [`discs::structure`](discs::structure()); averaged I(k): [`discs::structure::fit_intensity`] |
+//! | `/sweeps/{id}/compaction` | [`plastic::compaction`](plastic::compaction()) |
+//! | `/sweeps/{id}/coordination` | [`plastic::coordination`](plastic::coordination()) |
 //! | α_n, m_w, e_i | [`variation`](variation()) |
 //!
 //! Pictures of all of them: [`plot`].
 //!
-//! Runs come from records by [`Run::from_rows`]. Every answer is plain data for JSON; a part that the data do not
+//! Runs of spheres come from records by [`Run::from_rows`], states of discs by [`discs::DiscState::from_run`] and
+//! [`plastic::PlasticCurve::from_run`]. Every answer is plain data for JSON; a part that the data do not
 //! determine is a [`Determined::Undetermined`] with its reason while the rest stands.
 
 pub mod bonds;
 pub mod collapse;
 pub mod compare;
 pub mod cost;
+pub mod discs;
 mod error;
 mod estimate;
 pub mod exponents;
@@ -27,6 +34,7 @@ pub mod forces;
 mod joint;
 pub mod levels;
 pub mod master;
+pub mod plastic;
 pub mod plateau;
 pub mod plot;
 mod point;

@@ -4,7 +4,7 @@ use record::Row;
 use serde::{Deserialize, Serialize};
 
 /// Statuses of runs whose void ratio had not settled when they ended.
-const UNSETTLED: [&str; 4] = ["step_limit", "unsettled", "failed", "running"];
+const UNSETTLED: [&str; 5] = ["step_limit", "not_converged", "unsettled", "failed", "running"];
 
 /// Scene keys besides those of [`Run`] that make two runs different points (all but the seed).
 const VARIANT_KEYS: [&str; 11] = [

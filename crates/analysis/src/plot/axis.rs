@@ -104,7 +104,7 @@ fn log_ticks(low: f64, high: f64) -> Vec<Tick> {
 }
 
 /// A number without needless digits.
-pub(super) fn plain(value: f64) -> String {
+pub(crate) fn plain(value: f64) -> String {
     if value != 0.0 && !(1e-3..2e4).contains(&value.abs()) {
         let text = format!("{value:.1e}");
         let (mantissa, exponent) = text.split_once('e').expect("scientific notation has an exponent");

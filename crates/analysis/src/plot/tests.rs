@@ -57,3 +57,72 @@ fn pictures_of_a_study_are_drawn() {
             .collect();
     check("distribution", &distribution_svg(&crate::forces::distribution(&ratios, 1e-6)));
 }
+
+#[test]
+fn pictures_of_discs_are_drawn() {
+    use crate::discs::consolidation::PaperFit;
+    use crate::discs::{ConsolidationOptions, DiscState, consolidation, moduli, structure};
+    let mut states = Vec::new();
+    for (mu_r, loosest) in [(0.0, 0.472), (0.005, 0.524)] {
+        let paper = PaperFit::of(mu_r).unwrap();
+        for seed in 1..=4_u64 {
+            for i in 0..52 {
+                let up = i < 26;
+                let p_star = 0.01 * 10.0_f64.powf(f64::from(if up { i } else { 51 - i }) / 8.0);
+                let wave = 0.01 * (f64::from(i) * 1.7 + seed as f64 * 2.1).sin();
+                let loading = paper.inverse_phi(p_star).min(1.0 / loosest) + wave;
+                let inverse = if up { loading } else { 1.29 + 0.004 * (13.3 / p_star).ln() + 0.3 * wave };
+                let loose = up && p_star < 0.3;
+                states.push(DiscState {
+                    seed,
+                    assembly: "type2".to_owned(),
+                    mu_r,
+                    branch: if up { "compression" } else { "unloading" }.to_owned(),
+                    p_star,
+                    phi: 1.0 / inverse,
+                    z: Some(3.0),
+                    bulk: Some(0.02 * p_star.powf(0.3) * (1.0 + 5.0 * wave)),
+                    shear: Some(0.012 * p_star.powf(0.3)),
+                    bulk_voigt: Some(0.4 / inverse),
+                    shear_voigt: Some(0.25 / inverse),
+                    bulk_reuss: Some(0.015 * p_star.powf(0.3)),
+                    fractal_dimension: loose.then_some(1.52 + wave),
+                    correlation_length: loose.then(|| 5.1 - 1.2 * (p_star / 0.01).log10()),
+                    pore_radius: Some(2.0 * p_star.powf(-0.1)),
+                    converged: true,
+                    ..DiscState::default()
+                });
+            }
+        }
+    }
+    check(
+        "consolidation",
+        &consolidation_svg(&consolidation(&states, &ConsolidationOptions::default()).unwrap()),
+    );
+    check("moduli", &moduli_svg(&moduli(&states).unwrap()));
+    check("structure", &structure_svg(&structure(&states).unwrap()));
+}
+
+#[test]
+fn pictures_of_plastic_discs_are_drawn() {
+    use crate::plastic::model::{Constants, Material};
+    use crate::plastic::{CompactionOptions, PlasticCurve, PlasticState, compaction, coordination};
+    let run = |h: Option<f64>| {
+        let material = Material { young: 10e6, nu: 0.45, sigma_y: 0.4e6, h };
+        let states = (0..80)
+            .map(|i| 0.77 + 0.0025 * f64::from(i))
+            .map(|phi| {
+                let wave = (500.0 * phi).sin();
+                let z = if phi < 0.8 { 1.0 } else { 4.0 + 5.1 * (phi - 0.8_f64).sqrt() + 0.05 * wave };
+                let sigma = Constants::PAPER.sigma(&material, phi, z) * (1.02 + 0.03 * wave);
+                let sigma = if phi < 0.79999 { 0.0 } else { sigma.max(2e3) };
+                let f_p = h.map(|_| Constants::PAPER.plastic_share(phi));
+                PlasticState { phi, sigma, strain: Some((phi / 0.74).ln()), z: Some(z), f_p, kappa_d: None }
+            })
+            .collect();
+        PlasticCurve { id: String::new(), material, seed: 1, states }
+    };
+    let curves: Vec<PlasticCurve> = [None, Some(0.0), Some(1e6), Some(3e6)].into_iter().map(run).collect();
+    check("compaction", &compaction_svg(&compaction(&curves, &CompactionOptions::default()).unwrap()));
+    check("coordination", &coordination_svg(&coordination(&curves).unwrap()));
+}

@@ -1,0 +1,115 @@
+//! Compaction and coordination of the plastic discs.
+
+use super::axis::{Axis, Scale};
+use super::collapse::with_error;
+use super::figure::{Dash, Dot, Figure, Fill, INK, Layer, MARKERS, MUTED, PALETTE, Panel, Sample};
+use crate::plastic::{Compaction, Coordination, PlasticState};
+
+/// Stress against Φ (left) and excess strain (right), points with the fitted model (lines) and the paper's constants.
+#[must_use]
+pub fn compaction_svg(compaction: &Compaction) -> String {
+    let mut row = Vec::new();
+    let (mut by_phi, mut by_strain) = (Vec::new(), Vec::new());
+    let (mut phis, mut strains, mut stresses) = (Vec::new(), Vec::new(), Vec::new());
+    for (i, curve) in compaction.curves.iter().enumerate() {
+        let (color, marker) = (PALETTE[i % PALETTE.len()], MARKERS[i % MARKERS.len()]);
+        let start = curve.jamming.value().and_then(|jamming| jamming.strain_c);
+        let dots = |x: &dyn Fn(&PlasticState) -> Option<f64>| -> Vec<Dot> {
+            curve
+                .states
+                .iter()
+                .filter_map(|state| Some(Dot { x: x(state)?, y: state.sigma / 1e6, error: None }))
+                .collect()
+        };
+        let left = dots(&|state| Some(state.phi));
+        let right = dots(&|state| Some(state.strain? - start?).filter(|excess| *excess >= 0.0));
+        phis.extend(left.iter().map(|dot| dot.x));
+        strains.extend(right.iter().map(|dot| dot.x));
+        stresses.extend(left.iter().map(|dot| dot.y));
+        by_phi.push(Layer::Points { color, marker, fill: Fill::Open, dots: left });
+        by_strain.push(Layer::Points { color, marker, fill: Fill::Open, dots: right });
+        let line =
+            |dash: Dash, get: &dyn Fn(&crate::plastic::compaction::ModelSample) -> Option<f64>| Layer::Line {
+                color,
+                dash,
+                points: curve
+                    .model
+                    .iter()
+                    .filter_map(|sample| Some((sample.phi, get(sample)? / 1e6)))
+                    .collect(),
+            };
+        by_phi.push(line(Dash::Solid, &|sample| sample.fitted));
+        by_phi.push(line(Dash::Dashed, &|sample| Some(sample.paper)));
+        row.push((Sample::Point(color, marker, Fill::Open), curve.name.clone()));
+    }
+    let stress = |label: &str| Axis::around(label, Scale::Linear, stresses.iter().copied());
+    Figure {
+        title: "Compaction".to_owned(),
+        panels: vec![
+            Panel {
+                x: Axis::around("solid fraction Φ", Scale::Linear, phis.into_iter()),
+                y: stress("stress σ [MPa]"),
+                layers: by_phi,
+            },
+            Panel {
+                x: Axis::around("excess strain ε − εc", Scale::Linear, strains.into_iter()),
+                y: stress("stress σ [MPa]"),
+                layers: by_strain,
+            },
+        ],
+        legend: vec![
+            row,
+            vec![
+                (Sample::Line(MUTED, Dash::Solid), "model, fitted constants".to_owned()),
+                (Sample::Line(MUTED, Dash::Dashed), "model, paper's constants".to_owned()),
+            ],
+        ],
+    }
+    .svg()
+}
+
+/// Excess coordination number against excess solid fraction in log–log.
+#[must_use]
+pub fn coordination_svg(coordination: &Coordination) -> String {
+    let mut layers = Vec::new();
+    let mut row = Vec::new();
+    let (mut xs, mut ys) = (Vec::new(), Vec::new());
+    for (i, curve) in coordination.curves.iter().enumerate() {
+        let (color, marker) = (PALETTE[i % PALETTE.len()], MARKERS[i % MARKERS.len()]);
+        let dots: Vec<Dot> = curve
+            .points
+            .iter()
+            .filter(|point| point.excess_phi > 1e-4 && point.excess_z > 1e-2)
+            .map(|point| Dot { x: point.excess_phi, y: point.excess_z, error: None })
+            .collect();
+        xs.extend(dots.iter().map(|dot| dot.x));
+        ys.extend(dots.iter().map(|dot| dot.y));
+        layers.push(Layer::Points { color, marker, fill: Fill::Full, dots });
+        let gamma = curve.free.value().and_then(|fit| fit.parameter("gamma"));
+        let text =
+            gamma.map_or(curve.name.clone(), |gamma| format!("{}: γ = {}", curve.name, with_error(gamma)));
+        row.push((Sample::Point(color, marker, Fill::Full), text));
+    }
+    let slopes: Vec<f64> =
+        coordination.curves.iter().filter_map(|curve| Some(curve.square_root.value()?.values()[1])).collect();
+    let x = Axis::around("excess solid fraction Φ − Φc", Scale::Log, xs.into_iter());
+    if !slopes.is_empty() {
+        let psi = slopes.iter().sum::<f64>() / crate::point::count(slopes.len());
+        let points = (0..=100)
+            .map(|i| x.low * (x.high / x.low).powf(f64::from(i) / 100.0))
+            .map(|excess| (excess, psi * excess.sqrt()))
+            .collect();
+        layers.push(Layer::Line { color: INK, dash: Dash::Dashed, points });
+        row.push((Sample::Line(INK, Dash::Dashed), "slope 1/2, eq. (17)".to_owned()));
+    }
+    Figure {
+        title: "Coordination number above jamming".to_owned(),
+        panels: vec![Panel {
+            x,
+            y: Axis::around("excess coordination number Z − Zc", Scale::Log, ys.into_iter()),
+            layers,
+        }],
+        legend: vec![row],
+    }
+    .svg()
+}
