@@ -127,6 +127,16 @@ impl Domain {
         }
     }
 
+    /// Whether values are whole numbers.
+    #[must_use]
+    pub fn is_whole(&self) -> bool {
+        match self {
+            Self::Integer(..) | Self::OneOf(_) => true,
+            Self::Auto(inner) => inner.is_whole(),
+            _ => false,
+        }
+    }
+
     /// The domain in words, for remedies and documentation.
     #[must_use]
     pub fn describe(&self) -> String {

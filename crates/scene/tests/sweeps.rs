@@ -58,6 +58,14 @@ fn the_order_is_blocks_then_names_then_replicates() {
 }
 
 #[test]
+fn replicates_count_on_from_seeds_of_a_range() {
+    let mut definition = mini(json!([{"grid": {"seed": {"lin": [10, 30, 3]}}}]));
+    definition["replicates"] = json!(2);
+    let points: Vec<Point> = sweep(&definition).points().collect();
+    assert_eq!(column(&points, "seed"), [10.0, 11.0, 20.0, 21.0, 30.0, 31.0]);
+}
+
+#[test]
 fn parts_of_one_block_multiply() {
     let definition = mini(json!([{
         "grid": {"p": [1e4, 1e5]}, "zip": {"mu": [0.1, 0.2], "ei": [1.4, 1.5]}, "list": [{"mw": 24}, {"mw": 96}, {}]

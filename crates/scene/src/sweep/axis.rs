@@ -9,6 +9,8 @@ use crate::round12;
 pub struct Axis {
     /// Name of the key.
     pub key: String,
+    /// Whether the key is a whole number.
+    pub(super) whole: bool,
     pub(super) values: Values,
 }
 
@@ -45,17 +47,27 @@ impl Axis {
                 values[place].clone()
             }
             Values::Linear { first, last, count } => {
-                Value::from(between(*first, *last, index, *count, |share| {
+                self.number(between(*first, *last, index, *count, |share| {
                     first * (1.0 - share) + last * share
                 }))
             }
             Values::Logarithmic { first, last, count } => {
-                Value::from(between(*first, *last, index, *count, |share| {
+                self.number(between(*first, *last, index, *count, |share| {
                     // By libm: the same bits, and so the same scene keys, on every machine.
                     libm::exp(libm::log(*first) * (1.0 - share) + libm::log(*last) * share)
                 }))
             }
         }
+    }
+
+    /// A number of a range; whole where the key is. A number that is not stays as it is and is a problem of the
+    /// definition.
+    fn number(&self, value: f64) -> Value {
+        if self.whole && value.fract() == 0.0 && (0.0..9e15).contains(&value) {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "just checked")]
+            return Value::from(value as u64);
+        }
+        Value::from(value)
     }
 
     /// The values as a definition writes them.
@@ -85,7 +97,7 @@ mod tests {
     use super::*;
 
     fn log(first: f64, last: f64, count: u64) -> Axis {
-        Axis { key: "p".to_owned(), values: Values::Logarithmic { first, last, count } }
+        Axis { key: "p".to_owned(), whole: false, values: Values::Logarithmic { first, last, count } }
     }
 
     fn numbers(axis: &Axis) -> Vec<f64> {
@@ -114,7 +126,11 @@ mod tests {
 
     #[test]
     fn linear_ranges_hit_round_numbers() {
-        let axis = Axis { key: "x".to_owned(), values: Values::Linear { first: 0.0, last: 1.0, count: 11 } };
+        let axis = Axis {
+            key: "x".to_owned(),
+            whole: false,
+            values: Values::Linear { first: 0.0, last: 1.0, count: 11 },
+        };
         assert_eq!(numbers(&axis), [0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0]);
     }
 }

@@ -52,7 +52,7 @@ fn read_axis(
             return None;
         }
     };
-    Some(Axis { key: key.name.to_owned(), values })
+    Some(Axis { key: key.name.to_owned(), whole: key.domain.is_whole(), values })
 }
 
 fn listed(path: &str, key: &Key, values: &[Value], problems: &mut Vec<Problem>) -> Option<Values> {
