@@ -1,1 +1,3 @@
-//! Under construction.
+//! What the tests across packages share.
+
+pub mod workspace;
