@@ -1,3 +1,1 @@
-//! What the tests across packages share.
-
-pub mod workspace;
+//! Under construction.

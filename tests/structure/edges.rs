@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use tamp_tests::workspace::{all_dependencies, code, direct_dependencies, files};
+use crate::workspace::{all_dependencies, code, direct_dependencies, files};
 
 /// Packages of the workspace that a package may name directly.
 const MAY_USE: &[(&str, &[&str])] = &[
@@ -89,7 +89,15 @@ fn status_codes_are_known_only_at_the_edge() {
 #[test]
 fn the_physics_knows_no_clock_and_no_fixed_machine() {
     let words = [
-        "SystemTime", "Instant::", "thread_rng", "StdRng", "SmallRng", "HashMap", "HashSet", "std::net", "std::fs",
+        "SystemTime",
+        "Instant::",
+        "thread_rng",
+        "StdRng",
+        "SmallRng",
+        "HashMap",
+        "HashSet",
+        "std::net",
+        "std::fs",
     ];
     assert_eq!(lines_with("sim-core/src", &words, |_| false), Vec::<String>::new());
 }
@@ -98,8 +106,21 @@ fn the_physics_knows_no_clock_and_no_fixed_machine() {
 fn simulations_take_transcendental_functions_from_libm() {
     // std's come from the platform and may differ in the last bit between machines.
     let words = [
-        ".exp()", ".ln()", ".log10()", ".sin()", ".cos()", ".tan()", ".sin_cos()", ".acos()", ".asin()", ".atan()",
-        ".atan2(", ".powf(", ".cbrt()", ".hypot(", ".tanh()",
+        ".exp()",
+        ".ln()",
+        ".log10()",
+        ".sin()",
+        ".cos()",
+        ".tan()",
+        ".sin_cos()",
+        ".acos()",
+        ".asin()",
+        ".atan()",
+        ".atan2(",
+        ".powf(",
+        ".cbrt()",
+        ".hypot(",
+        ".tanh()",
     ];
     let elsewhere = |_: &Path| false;
     assert_eq!(lines_with("sim-core/src", &words, elsewhere), Vec::<String>::new());
@@ -108,7 +129,7 @@ fn simulations_take_transcendental_functions_from_libm() {
 
 #[test]
 fn code_left_out_of_a_search_is_really_left_out() {
-    let this = code(Path::new("tests/src/workspace.rs"));
+    let this = code(Path::new("tests/structure/workspace.rs"));
     assert!(!this.contains("Root of the workspace"), "comments are left out");
-    assert!(this.contains("pub fn root()"));
+    assert!(this.contains("pub(crate) fn root()"));
 }
