@@ -5,7 +5,8 @@ use std::path::Path;
 
 use crate::workspace::{files, read, root};
 
-const BEGIN: &str = "<!-- modules: generated, run `TAMP_BLESS=1 cargo test -p tamp-tests --test structure` -->\n";
+const BEGIN: &str =
+    "<!-- modules: generated, run `TAMP_BLESS=1 cargo test -p tamp-tests --test structure` -->\n";
 const END: &str = "<!-- end of modules -->";
 
 /// Source folders, in the order of the document.
