@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+use crate::canonical::canonical;
 use crate::discs::ReducedDiscs;
 use crate::spheres::ReducedSpheres;
 use crate::{Model, Problem, Problems, SceneKey};
@@ -58,7 +59,6 @@ impl Reduced {
             "physics_version": self.model().physics_version(),
             "scene": self,
         });
-        let canonical = serde_json_canonicalizer::to_vec(&identity).expect("a reduced scene is plain JSON");
-        SceneKey::of(&canonical)
+        SceneKey::of(&canonical(&identity))
     }
 }
