@@ -31,7 +31,12 @@ fn summary(path: &Path) -> String {
         .take_while(|line| !line.is_empty())
         .collect();
     let joined = paragraph.join(" ");
-    let end = joined.find(". ").map_or(joined.len(), |place| place + 1);
+    // A full stop ends a sentence when a capital follows: "eqs. (30)" goes on.
+    let ends = joined.match_indices(". ").map(|(place, _)| place);
+    let end = ends
+        .filter(|place| joined[place + 2..].starts_with(char::is_uppercase))
+        .min()
+        .map_or(joined.len(), |place| place + 1);
     joined[..end].trim_end_matches('.').replace('|', "\\|")
 }
 
