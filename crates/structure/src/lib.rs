@@ -1,4 +1,6 @@
 //! The source tree as tests see it: where it is, its files, its packages and the edges between them.
+//!
+//! A package of its own with next to no dependencies, so that these tests run in seconds.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -7,13 +9,15 @@ use std::process::Command;
 use serde_json::Value;
 
 /// Root of the workspace.
-pub(crate) fn root() -> PathBuf {
-    let tests = Path::new(env!("CARGO_MANIFEST_DIR"));
-    tests.parent().expect("the tests package lies in the workspace").to_path_buf()
+#[must_use]
+pub fn root() -> PathBuf {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    package.ancestors().nth(2).expect("the package lies in crates/structure").to_path_buf()
 }
 
 /// Every file below `folder` (relative to the root) that ends in `.extension`, as paths relative to the root, sorted.
-pub(crate) fn files(folder: &str, extension: &str) -> Vec<PathBuf> {
+#[must_use]
+pub fn files(folder: &str, extension: &str) -> Vec<PathBuf> {
     fn walk(folder: &Path, extension: &str, found: &mut Vec<PathBuf>) {
         let Ok(entries) = std::fs::read_dir(folder) else { return };
         for entry in entries.filter_map(Result::ok) {
@@ -38,13 +42,18 @@ pub(crate) fn files(folder: &str, extension: &str) -> Vec<PathBuf> {
 }
 
 /// The text of a file of the workspace.
-pub(crate) fn read(path: impl AsRef<Path>) -> String {
+///
+/// # Panics
+/// When there is no such file.
+#[must_use]
+pub fn read(path: impl AsRef<Path>) -> String {
     let full = root().join(path.as_ref());
     std::fs::read_to_string(&full).unwrap_or_else(|error| panic!("{}: {error}", full.display()))
 }
 
 /// The code of a Rust file: unit tests at its end and comments are left out.
-pub(crate) fn code(path: &Path) -> String {
+#[must_use]
+pub fn code(path: &Path) -> String {
     let text = read(path);
     let until_tests = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
     until_tests
@@ -58,7 +67,11 @@ pub(crate) fn code(path: &Path) -> String {
 }
 
 /// The packages of the workspace with their direct dependencies by name, development dependencies left out.
-pub(crate) fn direct_dependencies() -> BTreeMap<String, BTreeSet<String>> {
+///
+/// # Panics
+/// When `cargo metadata` fails.
+#[must_use]
+pub fn direct_dependencies() -> BTreeMap<String, BTreeSet<String>> {
     let output = Command::new(env!("CARGO"))
         .args(["metadata", "--no-deps", "--format-version", "1", "--offline"])
         .current_dir(root())
@@ -78,7 +91,8 @@ pub(crate) fn direct_dependencies() -> BTreeMap<String, BTreeSet<String>> {
 }
 
 /// What the lock file says each package needs, by name (all platforms; versions of one name are joined).
-pub(crate) fn locked_dependencies() -> BTreeMap<String, BTreeSet<String>> {
+#[must_use]
+pub fn locked_dependencies() -> BTreeMap<String, BTreeSet<String>> {
     let mut needs: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
     for package in read("Cargo.lock").split("[[package]]").skip(1) {
         let quoted = |line: &str| line.split('"').nth(1).unwrap_or_default().to_owned();
@@ -91,7 +105,8 @@ pub(crate) fn locked_dependencies() -> BTreeMap<String, BTreeSet<String>> {
 }
 
 /// Every package that `package` needs, directly or through others, at run or build time.
-pub(crate) fn all_dependencies(package: &str) -> BTreeSet<String> {
+#[must_use]
+pub fn all_dependencies(package: &str) -> BTreeSet<String> {
     let direct = direct_dependencies();
     let locked = locked_dependencies();
     let mut found = BTreeSet::new();

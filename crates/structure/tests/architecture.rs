@@ -3,10 +3,9 @@
 use std::fmt::Write;
 use std::path::Path;
 
-use crate::workspace::{files, read, root};
+use structure::{files, read, root};
 
-const BEGIN: &str =
-    "<!-- modules: generated, run `TAMP_BLESS=1 cargo test -p tamp-tests --test structure` -->\n";
+const BEGIN: &str = "<!-- modules: generated, run `TAMP_BLESS=1 cargo test -p structure` -->\n";
 const END: &str = "<!-- end of modules -->";
 
 /// Source folders, in the order of the document.
@@ -76,7 +75,7 @@ fn the_module_list_matches_the_tree() {
     }
     assert!(
         list.trim() == generated.trim(),
-        "docs/architecture.md is stale: run `TAMP_BLESS=1 cargo test -p tamp-tests --test structure`"
+        "docs/architecture.md is stale: run `TAMP_BLESS=1 cargo test -p structure`"
     );
 }
 
