@@ -62,9 +62,9 @@ pub(crate) fn evidence(samples: &[Sample], moving: [bool; 6]) -> Evidence {
     found
 }
 
-/// The samples of the last fifth of the time, one before them included; nothing while there are fewer than six.
+/// The samples of the last fifth of the time, one before them included; nothing while there are fewer than four.
 fn window(samples: &[Sample]) -> Option<&[Sample]> {
-    const FEWEST: usize = 6;
+    const FEWEST: usize = 4;
     let from = samples.last()?.time / WINDOW;
     let first = samples.partition_point(|sample| sample.time < from);
     let window = &samples[first.saturating_sub(1)..];

@@ -89,6 +89,8 @@ pub(crate) struct Memory {
     pub(crate) dt_cap: f64,
     /// Why the present time step is what it is.
     pub(crate) dt_reason: String,
+    /// Z when the stability bound was last asked for [1].
+    pub(crate) dt_bound_z: f64,
     /// Restarts with a smaller time step.
     pub(crate) retries: u32,
     /// Steps thrown away by restarts.

@@ -16,6 +16,8 @@ use crate::{Options, Progress, SimError, Simulation};
 
 /// Version of the checkpoint of a run.
 const CHECKPOINT_VERSION: u32 = 1;
+/// Growth of Z after which the stability bound of the time step is asked for again [1].
+const NETWORK_GROWTH: f64 = 1.0;
 
 /// A running scene of cohesive spheres.
 pub(crate) struct Run {
@@ -134,10 +136,13 @@ impl Run {
 
     fn sample(&mut self, view: &View) {
         let step = view.step;
-        if self.scene.dt.is_none() {
+        let sample = Sample::of(view, self.dynamics.dt());
+        // the bound costs some forty steps, so it is asked for only when the network has grown
+        if self.scene.dt.is_none() && sample.z >= self.memory.dt_bound_z + NETWORK_GROWTH {
+            self.memory.dt_bound_z = sample.z;
             self.adapt_dt();
         }
-        self.memory.samples.push(Sample::of(view, self.dynamics.dt()));
+        self.memory.samples.push(sample);
         self.memory.next_sample = self.memory.plan.after(step);
         let found = self.evidence();
         let (verdict, fired) = judge(&self.scene.stop, &found);
@@ -249,6 +254,7 @@ fn first_memory(scene: &ReducedSpheres, dt_cap: f64, dt_reason: String) -> Memor
         step_limit,
         dt_cap,
         dt_reason,
+        dt_bound_z: 0.0,
         retries: 0,
         abandoned: 0,
         fault: None,

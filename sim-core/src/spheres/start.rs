@@ -3,7 +3,7 @@
 use scene::spheres::{Approach, DampingMass, ReducedSpheres};
 
 use super::system;
-use crate::dem::{InitialState, SphereParameters};
+use crate::dem::{InitialState, SphereParameters, largest_step};
 use crate::equilibrium::estimate;
 use crate::packing::spheres::{self as packing, Request};
 use crate::{Explanation, Options, SimError, Skip};
@@ -43,9 +43,11 @@ pub(crate) fn largest_dt(scene: &ReducedSpheres) -> (f64, String) {
     if let Some(dt) = scene.dt {
         return (dt, "given".to_owned());
     }
-    // a jammed wall rests on about one contact per d² of its area; the stability limit of that mode is 2/ω
+    // A jammed wall rests on about one contact per d² of its area, and every contact has a spring and a dashpot.
     let lengths = packing::box_lengths(usize::try_from(scene.n).unwrap_or(usize::MAX), scene.ei.min(1.0));
-    let wall_limit = SAFETY * 2.0 / (lengths[1] * lengths[2] / scene.wall_mass).sqrt();
+    let contacts_over_mass = (lengths[1] * lengths[2]).max(1.0) / scene.wall_mass;
+    let wall_limit =
+        SAFETY * largest_step(2.0 * contacts_over_mass, 4.0 * scene.alpha_n * contacts_over_mass);
     let flight =
         if scene.agitation_speed > 0.0 { FARTHEST_FLIGHT / scene.agitation_speed } else { f64::INFINITY };
     if flight < LARGEST_DT && flight <= wall_limit {

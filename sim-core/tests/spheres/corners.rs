@@ -34,7 +34,7 @@ fn every_corner_ends() {
         }
     }
     assert_eq!(ended + unstable, 81);
-    assert!(unstable <= 8, "{unstable} of 81 gave up");
+    assert_eq!(unstable, 0, "a typed error would be allowed, but none of these needs it");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use super::{SMALLEST_GAP, reach};
 use crate::random::Stream;
 
 /// Blocks of sweeps; neighbour lists are rebuilt and the step length adapted between blocks.
-const BLOCKS: u32 = 40;
+const BLOCKS: u32 = 120;
 /// Trial moves per sphere and block.
 const SWEEPS_PER_BLOCK: u32 = 10;
 /// Farthest a sphere may go from where its neighbour list was built [d]. Within a block this is a fixed bound, so
@@ -14,7 +14,7 @@ const TETHER: f64 = 0.15;
 /// Hard diameter [d].
 const DIAMETER: f64 = 1.0 + SMALLEST_GAP;
 
-/// Makes 400 trial moves per sphere; the state stays free of overlap throughout.
+/// Makes 1200 trial moves per sphere; the state stays free of overlap throughout.
 pub(super) fn equilibrate(positions: &mut [[f64; 3]], lengths: [f64; 3], stream: Stream) {
     let reaches = lengths.map(reach);
     let mut step = 0.1;

@@ -3,11 +3,15 @@
 use super::cells::{Cells, distance_squared};
 use super::{SMALLEST_GAP, reach};
 
-/// Sweeps after which a state counts as not found. About 100 are needed at e = 1.7, 200 at 1.2, 1300 at 0.9 with 500
+/// Sweeps after which a state counts as not found. Some 30 are needed at e = 1.7, hundreds at 0.9 with 500
 /// spheres (fewer with more: less of the box is lost to the walls).
 const MOST_SWEEPS: u32 = 5000;
 /// Pairs are moved to a gap a little above the smallest one, so that a finite number of sweeps gets there [d].
 const TARGET_GAP: f64 = 1.05 * SMALLEST_GAP;
+/// Share of the missing distance by which a pair is moved apart: over-relaxation [1]. It also decides how much of the
+/// large-scale unevenness of random points survives, and with adhesion the final void ratio depends on that
+/// (docs/accuracy.md); 1.4 agrees with the independent reference runs in e, e_core and Z± at both sizes.
+const OVER_RELAXATION: f64 = 1.4;
 /// Reach of the pair list beyond the target, for pairs that come close within one sweep [d].
 const MARGIN: f64 = 0.1;
 
@@ -46,7 +50,7 @@ pub(super) fn push_apart(positions: &mut [[f64; 3]], lengths: [f64; 3]) -> Resul
     Err(Stuck { sweeps: MOST_SWEEPS, close_pairs })
 }
 
-/// Moves a pair that is too close to the target gap, half the way each, kept off the walls.
+/// Moves a pair that is too close beyond the target gap, half the way each, kept off the walls.
 fn separate(positions: &mut [[f64; 3]], i: usize, j: usize, reaches: [(f64, f64); 3]) {
     const TARGET: f64 = 1.0 + TARGET_GAP;
     let square = distance_squared(&positions[i], &positions[j]);
@@ -60,7 +64,7 @@ fn separate(positions: &mut [[f64; 3]], i: usize, j: usize, reaches: [(f64, f64)
         // coincident centres part along the long edge
         [0.0, 0.0, 1.0]
     };
-    let half = 0.5 * (TARGET - distance);
+    let half = 0.5 * OVER_RELAXATION * (TARGET - distance);
     for k in 0..3 {
         positions[i][k] += half * normal[k];
         positions[j][k] -= half * normal[k];
@@ -81,14 +85,14 @@ mod tests {
     use crate::random::Stream;
 
     #[test]
-    fn the_papers_density_takes_about_a_hundred_sweeps() {
+    fn the_papers_density_takes_tens_of_sweeps() {
         for seed in 0..3 {
             let lengths = super::super::box_lengths(500, 1.704);
             let mut points = Stream::new(seed, 1);
             let mut positions: Vec<[f64; 3]> =
                 (0..500).map(|_| lengths.map(|edge| 0.5 + (edge - 1.0) * points.unit())).collect();
             let sweeps = push_apart(&mut positions, lengths).unwrap();
-            assert!((20..300).contains(&sweeps), "{sweeps}");
+            assert!((10..100).contains(&sweeps), "{sweeps}");
         }
     }
 }
