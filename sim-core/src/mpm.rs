@@ -3,6 +3,13 @@
 //! Nezamabadi, Ghadiri, Delenne, Radjai (2021), Comput. Part. Mech. 9, 45–52 ("the paper"; its equation numbers are
 //! kept). Plane strain; any consistent units (the engine runs with E = ρ = 1, the tests with µm, MPa, µs).
 
+pub mod body;
 pub mod constitutive;
+pub mod contact;
+pub mod element;
+pub mod implicit;
 pub mod plane;
 pub mod real;
+pub mod skyline;
+pub mod template;
+pub mod world;

@@ -3,3 +3,6 @@
 
 mod material_point;
 mod reference;
+mod scenes;
+mod single_disc;
+mod square_cell;

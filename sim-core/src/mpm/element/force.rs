@@ -1,0 +1,93 @@
+//! Internal forces alone.
+
+use super::{Inverted, LEAST_STEP_JACOBIAN, Law};
+use crate::mpm::body::{Body, Points};
+use crate::mpm::constitutive::{advance, increment};
+use crate::mpm::plane::Mat2;
+
+/// The internal force on every node for a displacement, and the state it leads to, from the state of `body`.
+///
+/// # Errors
+/// [`Inverted`] when a point is crushed; `trial` and `force` are then void.
+pub fn internal_force(
+    body: &Body,
+    displacement: &[f64],
+    law: &Law,
+    trial: &mut Points,
+    force: &mut [f64],
+) -> Result<(), Inverted> {
+    match body.template.nodes_per_cell {
+        4 => by_cell::<4>(body, displacement, law, trial, force),
+        16 => by_cell::<16>(body, displacement, law, trial, force),
+        other => unreachable!("cells have 4 or 16 nodes, not {other}"),
+    }
+}
+
+fn by_cell<const N: usize>(
+    body: &Body,
+    displacement: &[f64],
+    law: &Law,
+    trial: &mut Points,
+    force: &mut [f64],
+) -> Result<(), Inverted> {
+    let template = &*body.template;
+    let (unit, area) = (1.0 / body.size, body.size * body.size);
+    force.fill(0.0);
+    let cells = template.cells.as_chunks::<N>().0;
+    let gradients = template.gradients.as_chunks::<N>().0;
+    for (cell, nodes) in cells.iter().enumerate() {
+        let points = template.first_point[cell] as usize..template.first_point[cell + 1] as usize;
+        let u = nodes.map(|node| [displacement[2 * node as usize], displacement[2 * node as usize + 1]]);
+        let (mut before, mut after) = (0.0, 0.0);
+        for p in points.clone() {
+            let f = gradient(&u, &gradients[p], unit);
+            trial.gradient[p] = f;
+            before += template.volumes[p] * body.points.gradient[p].det();
+            after += template.volumes[p] * f.det();
+        }
+        let mut sum = [[0.0; 2]; N];
+        for p in points {
+            let now = trial.gradient[p];
+            let step = now.dot(body.points.gradient[p].inverse());
+            let jacobian = step.det();
+            if jacobian.is_nan() || jacobian <= LEAST_STEP_JACOBIAN {
+                return Err(Inverted { point: p });
+            }
+            let seen =
+                if law.mean_dilatation { step.scaled((after / before / jacobian).sqrt()) } else { step };
+            let strain = increment(seen, law.kinematics);
+            let update = advance(&law.material, body.points.stress[p], body.points.plastic[p], &strain);
+            trial.stress[p] = update.stress;
+            trial.plastic[p] = body.points.plastic[p] + update.plastic;
+            // V σ F⁻ᵀ with the adjugate: V0 · cof(F)
+            let weight = template.volumes[p] * area * unit;
+            let s = update.stress;
+            let xx = weight * (s.xx * now.yy - s.xy * now.xy);
+            let xy = weight * (s.xy * now.xx - s.xx * now.yx);
+            let yx = weight * (s.xy * now.yy - s.yy * now.xy);
+            let yy = weight * (s.yy * now.xx - s.xy * now.yx);
+            for (target, g) in sum.iter_mut().zip(&gradients[p]) {
+                target[0] += xx * g[0] + xy * g[1];
+                target[1] += yx * g[0] + yy * g[1];
+            }
+        }
+        for (node, sum) in nodes.iter().zip(&sum) {
+            force[2 * *node as usize] += sum[0];
+            force[2 * *node as usize + 1] += sum[1];
+        }
+    }
+    Ok(())
+}
+
+/// F = I + Σ_a u_a ⊗ ∇N_a.
+#[inline]
+pub(super) fn gradient<const N: usize>(u: &[[f64; 2]; N], g: &[[f64; 2]; N], unit: f64) -> Mat2 {
+    let mut sum = [0.0; 4];
+    for (u, g) in u.iter().zip(g) {
+        sum[0] += u[0] * g[0];
+        sum[1] += u[0] * g[1];
+        sum[2] += u[1] * g[0];
+        sum[3] += u[1] * g[1];
+    }
+    Mat2 { xx: 1.0 + unit * sum[0], xy: unit * sum[1], yx: unit * sum[2], yy: 1.0 + unit * sum[3] }
+}

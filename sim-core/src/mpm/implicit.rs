@@ -1,0 +1,411 @@
+//! Implicit step: Newton's method on the end-of-step velocities with the contact problem solved inside each iteration.
+//!
+//! R(v) = M (v − vⁿ) + Δt [θ f(uⁿ⁺¹) + (1 − θ) f(uⁿ) − M b] − Hᵀ p, uⁿ⁺¹ = uⁿ + Δt (θ v + (1 − θ) vⁿ). The matrix
+//! A = M + θ² Δt² K couples no two bodies: each has its own factor, and contact sees it through the compliance of the
+//! body's boundary.
+
+use rayon::prelude::*;
+
+use super::body::{Body, Points};
+use super::contact::detect::{Outline, candidates};
+use super::contact::gauss_seidel::{self, Tolerance};
+use super::contact::rows::{Rows, tangent};
+use super::contact::{Candidate, Key, Partner, Wall};
+use super::element::{Law, internal_force_and_tangent};
+use super::skyline::Skyline;
+use super::world::World;
+
+/// Mass factor of an unknown held at rest: its response is below round-off.
+const RIGID: f64 = 1e30;
+
+/// Why a step did not converge.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Failure {
+    /// A material point was crushed by the trial step.
+    Inverted {
+        /// Body of the point.
+        body: usize,
+    },
+    /// The tangent of a body is not positive definite.
+    Indefinite {
+        /// The body.
+        body: usize,
+    },
+    /// Newton's iteration did not reach the tolerance.
+    Residual {
+        /// Force residual relative to the forces.
+        residual: f64,
+        /// Worst overlap, or gap under load, in cells.
+        gap: f64,
+    },
+}
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Inverted { body } => write!(out, "a material point of body {body} was crushed"),
+            Self::Indefinite { body } => write!(out, "the tangent of body {body} is not positive definite"),
+            Self::Residual { residual, gap } => {
+                write!(out, "relative force residual {residual:.1e}, worst gap error {gap:.1e} cells")
+            }
+        }
+    }
+}
+
+/// Scratch space of one body.
+struct Work {
+    velocity: Vec<f64>,
+    free: Vec<f64>,
+    displacement: Vec<f64>,
+    start_force: Vec<f64>,
+    force: Vec<f64>,
+    residual: Vec<f64>,
+    trial: Points,
+    matrix: Skyline,
+    scratch: Vec<f64>,
+}
+
+/// Solver with its scratch space; holds nothing that a run depends on.
+pub struct Implicit {
+    work: Vec<Work>,
+    outlines: Vec<Outline>,
+    candidates: Vec<Vec<Candidate>>,
+    rows: Rows,
+    compliance: Vec<Vec<f64>>,
+    contact_velocity: Vec<Vec<f64>>,
+    contact_impulse: Vec<Vec<f64>>,
+    sizes: Vec<usize>,
+}
+
+impl Implicit {
+    /// Scratch space for a world.
+    #[must_use]
+    pub fn new(world: &World) -> Self {
+        let work = world.bodies.iter().map(Work::new).collect();
+        let sizes: Vec<usize> =
+            world.bodies.iter().map(|body| body.template.profile.contact_size()).collect();
+        let n = world.bodies.len();
+        Self {
+            work,
+            outlines: vec![Outline::default(); n],
+            candidates: vec![Vec::new(); n],
+            rows: Rows::default(),
+            compliance: vec![Vec::new(); n],
+            contact_velocity: sizes.iter().map(|&size| vec![0.0; size]).collect(),
+            contact_impulse: sizes.iter().map(|&size| vec![0.0; size]).collect(),
+            sizes,
+        }
+    }
+
+    /// One step of `dt`, in halves, quarters, … where it does not converge at once.
+    ///
+    /// # Errors
+    /// The [`Failure`] of the shortest step tried; the world is then at the last converged time.
+    pub fn step(&mut self, world: &mut World, dt: f64) -> Result<(), Failure> {
+        // a binary clock of substeps: `level` is the present halving, `done` the share of the step that is behind
+        let (mut level, mut done) = (0_u32, 0_u64);
+        let whole = 1_u64 << world.numerics.halvings;
+        while done < whole {
+            match self.attempt(world, dt / (1_u64 << level) as f64) {
+                Ok(()) => {
+                    done += whole >> level;
+                    while level > 0 && done.is_multiple_of(whole >> (level - 1)) {
+                        level -= 1;
+                    }
+                }
+                Err(failure) if level == world.numerics.halvings => return Err(failure),
+                Err(_) => {
+                    level += 1;
+                    world.effort.halved += 1;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn attempt(&mut self, world: &mut World, dt: f64) -> Result<(), Failure> {
+        let numerics = world.numerics;
+        let advance = numerics.theta * dt;
+        let walls: Vec<Wall> = world
+            .walls
+            .iter()
+            .map(|wall| Wall { point: [0, 1].map(|i| wall.point[i] + dt * wall.velocity[i]), ..*wall })
+            .collect();
+        // impulses of the last step, scaled to this one, are the first guess
+        let scale = if world.last_dt > 0.0 { dt / world.last_dt } else { 0.0 };
+        let mut warm: Vec<(Key, [f64; 2])> =
+            world.impulses.iter().map(|&(key, p)| (key, p.map(|one| one * scale))).collect();
+        for (work, body) in self.work.iter_mut().zip(&world.bodies) {
+            work.velocity.copy_from_slice(&body.velocity);
+            work.start_force.fill(0.0);
+        }
+        if numerics.theta < 1.0 {
+            self.start_forces(world)?;
+        }
+        let cell = world.bodies.iter().map(|body| body.template.cell * body.size).fold(f64::MAX, f64::min);
+        let mut worst = (f64::INFINITY, f64::INFINITY);
+        for iteration in 0..=numerics.iterations {
+            self.linearise(world, dt)?;
+            self.detect(world, &walls, 0.5 * cell);
+            self.rows.build(&self.candidates, &world.bodies, &walls, &warm);
+            let (residual, gap) = self.errors(world, dt, cell);
+            worst = (residual, gap);
+            if iteration > 0 && residual <= numerics.residual && gap <= numerics.gap {
+                world.effort.newton += iteration as u64;
+                self.commit(world, walls, dt);
+                return Ok(());
+            }
+            if iteration == numerics.iterations {
+                break;
+            }
+            self.factorise(world)?;
+            self.bound(world, advance);
+            gauss_seidel::prepare(&mut self.rows, &self.compliance, &self.sizes, world.friction);
+            for ((contact, work), body) in self.contact_velocity.iter_mut().zip(&self.work).zip(&world.bodies)
+            {
+                gather_contact(body, &work.free, contact);
+            }
+            let tolerance = Tolerance { impulse: numerics.impulse, sweeps: numerics.sweeps };
+            let solve = gauss_seidel::solve(
+                &mut self.rows,
+                &mut self.contact_velocity,
+                &self.sizes,
+                world.friction,
+                tolerance,
+            );
+            world.effort.sweeps += solve.sweeps as u64;
+            self.correct(world, 0.5 * cell / dt);
+            warm = self.rows.rows.iter().map(|row| (row.key, row.impulse)).collect();
+        }
+        world.effort.newton += numerics.iterations as u64;
+        Err(Failure::Residual { residual: worst.0, gap: worst.1 })
+    }
+
+    fn start_forces(&mut self, world: &World) -> Result<(), Failure> {
+        let law = world.law;
+        let all = self.work.par_iter_mut().zip(&world.bodies).enumerate();
+        collect(all.map(|(body, (work, state))| {
+            super::element::internal_force(
+                state,
+                &state.displacement,
+                &law,
+                &mut work.trial,
+                &mut work.start_force,
+            )
+            .map_err(|_| Failure::Inverted { body })
+        }))
+    }
+
+    /// Forces and matrices at the present velocities.
+    fn linearise(&mut self, world: &World, dt: f64) -> Result<(), Failure> {
+        let (law, theta, gravity): (Law, _, _) = (world.law, world.numerics.theta, world.acceleration);
+        let all = self.work.par_iter_mut().zip(&world.bodies).enumerate();
+        collect(all.map(|(number, (work, body))| {
+            let motion = work.velocity.iter().zip(&body.velocity).zip(&body.displacement);
+            for (u, ((v, v0), u0)) in work.displacement.iter_mut().zip(motion) {
+                *u = u0 + dt * (theta * v + (1.0 - theta) * v0);
+            }
+            work.matrix.clear();
+            let factor = theta * theta * dt * dt;
+            internal_force_and_tangent(
+                body,
+                &work.displacement,
+                &law,
+                &mut work.trial,
+                &mut work.force,
+                factor,
+                &mut work.matrix,
+            )
+            .map_err(|_| Failure::Inverted { body: number })?;
+            for (unknown, residual) in work.residual.iter_mut().enumerate() {
+                let mass = body.mass[unknown / 2];
+                let force = theta * work.force[unknown] + (1.0 - theta) * work.start_force[unknown];
+                *residual = mass * (work.velocity[unknown] - body.velocity[unknown])
+                    + dt * (force - mass * gravity[unknown % 2]);
+            }
+            body.fixed.iter().for_each(|&unknown| work.residual[unknown as usize] = 0.0);
+            Ok(())
+        }))
+    }
+
+    fn detect(&mut self, world: &World, walls: &[Wall], range: f64) {
+        let shapes = self.outlines.par_iter_mut().zip(&world.bodies).zip(&self.work);
+        shapes.for_each(|((outline, body), work)| {
+            body.outline_at(&work.displacement, &mut outline.points);
+            outline.refresh();
+        });
+        let outlines = &self.outlines;
+        self.candidates
+            .par_iter_mut()
+            .enumerate()
+            .for_each(|(body, list)| candidates(body, outlines, walls, range, list));
+    }
+
+    /// Relative force residual with the present impulses, and worst overlap or gap under load in cells.
+    fn errors(&mut self, world: &World, dt: f64, cell: f64) -> (f64, f64) {
+        self.contact_impulse.iter_mut().for_each(|vector| vector.fill(0.0));
+        self.rows.scatter(&mut self.contact_impulse);
+        let (mut residual, mut forces, mut contact, mut inertia) = (0.0, 0.0, 0.0, 0.0);
+        for ((body, work), impulse) in world.bodies.iter().zip(&self.work).zip(&self.contact_impulse) {
+            let profile = &body.template.profile;
+            let inner = profile.size() - profile.contact_size();
+            for (unknown, r) in work.residual.iter().enumerate() {
+                let row = profile.row_of(unknown);
+                let p = if row >= inner { impulse[row - inner] } else { 0.0 };
+                residual += (r - p) * (r - p);
+                contact += p * p;
+                let force = dt * work.force[unknown];
+                forces += force * force;
+                let momentum = body.mass[unknown / 2] * work.velocity[unknown];
+                inertia += momentum * momentum;
+            }
+        }
+        let scale = f64::max(forces, contact).max(1e-6 * inertia);
+        let relative = if scale > 0.0 { (residual / scale).sqrt() } else { 0.0 };
+        let loads: f64 = self.rows.rows.iter().map(|row| row.impulse[0]).sum();
+        let mean = loads / self.rows.rows.iter().filter(|row| row.impulse[0] > 0.0).count().max(1) as f64;
+        let mut worst = 0.0_f64;
+        for (row, candidate) in self.rows.rows.iter().zip(self.candidates.iter().flatten()) {
+            let under_load = if row.impulse[0] > 1e-3 * mean { candidate.gap } else { 0.0 };
+            worst = worst.max(-candidate.gap).max(under_load);
+        }
+        (relative, worst / cell)
+    }
+
+    /// Factors, boundary compliances and the velocities without contact.
+    fn factorise(&mut self, world: &World) -> Result<(), Failure> {
+        let all = self.work.par_iter_mut().zip(&world.bodies).zip(&mut self.compliance).enumerate();
+        collect(all.map(|(number, ((work, body), compliance))| {
+            let profile = &body.template.profile;
+            for (unknown, mass) in body.mass.iter().flat_map(|mass| [mass, mass]).enumerate() {
+                work.matrix.add(profile.entry(unknown, unknown), *mass);
+            }
+            for &unknown in &body.fixed {
+                let unknown = unknown as usize;
+                work.matrix.add(profile.entry(unknown, unknown), RIGID * body.mass[unknown / 2]);
+            }
+            work.matrix.factorise(profile).map_err(|_| Failure::Indefinite { body: number })?;
+            work.matrix.contact_compliance(profile, compliance);
+            work.free.copy_from_slice(&work.residual);
+            work.matrix.solve(profile, &mut work.free, &mut work.scratch);
+            for (free, v) in work.free.iter_mut().zip(&work.velocity) {
+                *free = v - *free;
+            }
+            Ok(())
+        }))
+    }
+
+    /// Bounds of the normal velocities: the gap at the end of the step stays open.
+    fn bound(&mut self, world: &World, advance: f64) {
+        for ((contact, work), body) in self.contact_velocity.iter_mut().zip(&self.work).zip(&world.bodies) {
+            gather_contact(body, &work.velocity, contact);
+        }
+        let mut rows = std::mem::take(&mut self.rows.rows);
+        for (row, candidate) in rows.iter_mut().zip(self.candidates.iter().flatten()) {
+            let u = self.rows.relative(row, &self.contact_velocity);
+            row.bound = u[0] * row.normal[0] + u[1] * row.normal[1] - candidate.gap / advance;
+        }
+        self.rows.rows = rows;
+    }
+
+    /// New velocities from the impulses, no node moving by more than half a cell relative to the last iterate.
+    fn correct(&mut self, world: &World, limit: f64) {
+        self.contact_impulse.iter_mut().for_each(|vector| vector.fill(0.0));
+        self.rows.scatter(&mut self.contact_impulse);
+        let all = self.work.par_iter_mut().zip(&world.bodies).zip(&self.contact_impulse);
+        let most: Vec<f64> = all
+            .map(|((work, body), impulse)| {
+                let profile = &body.template.profile;
+                let inner = profile.size() - profile.contact_size();
+                work.scratch.clear();
+                work.scratch.resize(profile.size(), 0.0);
+                work.scratch[inner..].copy_from_slice(impulse);
+                work.matrix.solve_rows(profile, &mut work.scratch);
+                let mut most = 0.0_f64;
+                for (unknown, free) in work.free.iter_mut().enumerate() {
+                    *free += work.scratch[profile.row_of(unknown)];
+                    most = most.max((*free - work.velocity[unknown]).abs());
+                }
+                most
+            })
+            .collect();
+        let share = (limit / most.into_iter().fold(limit, f64::max)).min(1.0);
+        for work in &mut self.work {
+            for (v, new) in work.velocity.iter_mut().zip(&work.free) {
+                *v += share * (new - *v);
+            }
+        }
+    }
+
+    /// Takes over the converged state.
+    fn commit(&mut self, world: &mut World, walls: Vec<Wall>, dt: f64) {
+        let hardening = world.law.material.plasticity;
+        let gravity = world.acceleration;
+        for (work, body) in self.work.iter_mut().zip(&mut world.bodies) {
+            if let Some(hardening) = hardening {
+                let area = body.size * body.size;
+                for p in 0..work.trial.plastic.len() {
+                    let flow = work.trial.plastic[p] - body.points.plastic[p];
+                    if flow > 0.0 {
+                        let volume = work.trial.gradient[p].det() * body.template.volumes[p] * area;
+                        let q = hardening.yield_stress + hardening.modulus * work.trial.plastic[p];
+                        world.energies.plastic += volume * q * flow;
+                    }
+                }
+            }
+            for (unknown, (new, old)) in work.displacement.iter().zip(&body.displacement).enumerate() {
+                world.energies.work += body.mass[unknown / 2] * gravity[unknown % 2] * (new - old);
+            }
+            std::mem::swap(&mut body.points, &mut work.trial);
+            body.displacement.copy_from_slice(&work.displacement);
+            body.velocity.copy_from_slice(&work.velocity);
+        }
+        world.impulses.clear();
+        world.normals.clear();
+        for row in self.rows.rows.iter().filter(|row| row.impulse != [0.0; 2]) {
+            let t = tangent(row.normal);
+            if let Partner::Wall(number) = row.key.partner {
+                world.wall_impulse[number as usize] += row.impulse[0];
+                let p = [0, 1].map(|i| row.impulse[0] * row.normal[i] + row.impulse[1] * t[i]);
+                world.energies.work += p[0] * row.wall_velocity[0] + p[1] * row.wall_velocity[1];
+            }
+            world.impulses.push((row.key, row.impulse));
+            world.normals.push(row.normal);
+        }
+        world.walls = walls;
+        world.last_dt = dt;
+        world.time += dt;
+        world.effort.substeps += 1;
+    }
+}
+
+impl Work {
+    fn new(body: &Body) -> Self {
+        let n = body.displacement.len();
+        let zero = || vec![0.0; n];
+        Self {
+            velocity: zero(),
+            free: zero(),
+            displacement: zero(),
+            start_force: zero(),
+            force: zero(),
+            residual: zero(),
+            trial: body.points.clone(),
+            matrix: Skyline::zero(&body.template.profile),
+            scratch: zero(),
+        }
+    }
+}
+
+/// The values of the contact unknowns in the order of their rows.
+fn gather_contact(body: &Body, values: &[f64], out: &mut [f64]) {
+    for (&node, &row) in body.template.contact_nodes.iter().zip(&body.template.contact_rows) {
+        out[row as usize] = values[2 * node as usize];
+        out[row as usize + 1] = values[2 * node as usize + 1];
+    }
+}
+
+/// The first failure in the order of the bodies, whichever thread met it first.
+fn collect(results: impl IndexedParallelIterator<Item = Result<(), Failure>>) -> Result<(), Failure> {
+    results.collect::<Vec<_>>().into_iter().collect()
+}

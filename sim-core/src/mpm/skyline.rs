@@ -1,0 +1,294 @@
+//! Symmetric positive definite matrices stored by rows under a skyline, their Cholesky factor and solves.
+//!
+//! A body has a few hundred unknowns and a fixed sparsity, and contact needs the exact compliance of its boundary:
+//! a skyline with the contact unknowns last gives it from the last block of the factor.
+
+/// Where the entries of the lower triangle lie.
+#[derive(Clone, Debug)]
+pub struct Profile {
+    /// Row of each unknown (unknown 2a + i is component i of node a).
+    row: Vec<u32>,
+    /// First stored column of each row.
+    first: Vec<u32>,
+    /// Start of each row in the value array, and its end.
+    start: Vec<u32>,
+    /// Number of trailing unknowns that take part in contact.
+    contact: usize,
+}
+
+/// The matrix, later its factor, on a [`Profile`].
+#[derive(Clone, Debug)]
+pub struct Skyline {
+    values: Vec<f64>,
+}
+
+/// The matrix has a pivot that is not positive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NotPositive;
+
+impl Profile {
+    /// The profile of the cell graph for nodes eliminated in `order`, the last `contact` of which touch others.
+    #[must_use]
+    pub fn new(order: &[u32], cells: &[u32], nodes_per_cell: usize, contact: usize) -> Self {
+        let mut place = vec![0_u32; order.len()];
+        for (position, &node) in order.iter().enumerate() {
+            place[node as usize] = position as u32;
+        }
+        let mut least: Vec<u32> = (0..order.len() as u32).collect();
+        for corners in cells.chunks_exact(nodes_per_cell) {
+            let lowest = corners.iter().map(|&node| place[node as usize]).min().unwrap_or(0);
+            for &node in corners {
+                let at = place[node as usize] as usize;
+                least[at] = least[at].min(lowest);
+            }
+        }
+        // the contact block is used as a dense one
+        let dense = order.len() - contact;
+        for at in dense..order.len() {
+            least[at] = least[at].min(dense as u32);
+        }
+        let first: Vec<u32> = (0..2 * order.len()).map(|row| 2 * least[row / 2]).collect();
+        let mut start = vec![0_u32; first.len() + 1];
+        for row in 0..first.len() {
+            start[row + 1] = start[row] + row as u32 + 1 - first[row];
+        }
+        let row = (0..2 * order.len()).map(|unknown| 2 * place[unknown / 2] + (unknown % 2) as u32).collect();
+        Self { row, first, start, contact: 2 * contact }
+    }
+
+    /// Number of unknowns.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.first.len()
+    }
+
+    /// Number of unknowns that take part in contact.
+    #[must_use]
+    pub fn contact_size(&self) -> usize {
+        self.contact
+    }
+
+    /// Stored entries.
+    #[must_use]
+    pub fn entries(&self) -> usize {
+        self.start[self.first.len()] as usize
+    }
+
+    /// Place of the entry of two unknowns.
+    #[inline]
+    #[must_use]
+    pub fn entry(&self, a: usize, b: usize) -> usize {
+        let (a, b) = (self.row[a], self.row[b]);
+        let (row, column) = if a >= b { (a, b) } else { (b, a) };
+        (self.start[row as usize] + column - self.first[row as usize]) as usize
+    }
+
+    /// Row of an unknown.
+    #[inline]
+    #[must_use]
+    pub fn row_of(&self, unknown: usize) -> usize {
+        self.row[unknown] as usize
+    }
+
+    #[inline]
+    fn slice<'a>(&self, values: &'a [f64], row: usize) -> &'a [f64] {
+        &values[self.start[row] as usize..self.start[row + 1] as usize]
+    }
+}
+
+/// Σ a_i b_i in four fixed chains: the same bits in every build.
+#[inline]
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut chains = [0.0; 4];
+    let (a4, a_rest) = a.as_chunks::<4>();
+    let (b4, b_rest) = b.as_chunks::<4>();
+    for (x, y) in a4.iter().zip(b4) {
+        for k in 0..4 {
+            chains[k] += x[k] * y[k];
+        }
+    }
+    let mut sum = (chains[0] + chains[2]) + (chains[1] + chains[3]);
+    for (x, y) in a_rest.iter().zip(b_rest) {
+        sum += x * y;
+    }
+    sum
+}
+
+impl Skyline {
+    /// A zero matrix.
+    #[must_use]
+    pub fn zero(profile: &Profile) -> Self {
+        Self { values: vec![0.0; profile.entries()] }
+    }
+
+    /// Sets every entry to zero.
+    pub fn clear(&mut self) {
+        self.values.fill(0.0);
+    }
+
+    /// Adds to an entry found by [`Profile::entry`].
+    #[inline]
+    pub fn add(&mut self, entry: usize, value: f64) {
+        self.values[entry] += value;
+    }
+
+    /// Replaces the matrix by its lower Cholesky factor, with the inverse of the diagonal in its place.
+    ///
+    /// # Errors
+    /// [`NotPositive`] when a pivot is not positive; the content is then void.
+    pub fn factorise(&mut self, profile: &Profile) -> Result<(), NotPositive> {
+        for row in 0..profile.size() {
+            let (done, rest) = self.values.split_at_mut(profile.start[row] as usize);
+            let first = profile.first[row] as usize;
+            let current = &mut rest[..=row - first];
+            for column in first..row {
+                let other = profile.slice(done, column);
+                let other_first = profile.first[column] as usize;
+                let from = first.max(other_first);
+                let sum = dot(
+                    &current[from - first..column - first],
+                    &other[from - other_first..column - other_first],
+                );
+                current[column - first] = (current[column - first] - sum) * other[column - other_first];
+            }
+            let (head, diagonal) = current.split_at_mut(row - first);
+            let pivot = diagonal[0] - dot(head, head);
+            if pivot.is_nan() || pivot <= 0.0 {
+                return Err(NotPositive);
+            }
+            diagonal[0] = 1.0 / pivot.sqrt();
+        }
+        Ok(())
+    }
+
+    /// Solves L Lᵀ x = b in place; `b` in the order of the rows.
+    pub fn solve_rows(&self, profile: &Profile, b: &mut [f64]) {
+        for row in 0..profile.size() {
+            let line = profile.slice(&self.values, row);
+            let first = profile.first[row] as usize;
+            let n = row - first;
+            b[row] = (b[row] - dot(&line[..n], &b[first..row])) * line[n];
+        }
+        for row in (0..profile.size()).rev() {
+            let line = profile.slice(&self.values, row);
+            let first = profile.first[row] as usize;
+            let n = row - first;
+            let x = b[row] * line[n];
+            b[row] = x;
+            for (target, l) in b[first..row].iter_mut().zip(line) {
+                *target -= l * x;
+            }
+        }
+    }
+
+    /// Solves for a vector in the order of the unknowns, with `scratch` of the same length.
+    pub fn solve(&self, profile: &Profile, b: &mut [f64], scratch: &mut Vec<f64>) {
+        scratch.clear();
+        scratch.resize(b.len(), 0.0);
+        for (unknown, &value) in b.iter().enumerate() {
+            scratch[profile.row_of(unknown)] = value;
+        }
+        self.solve_rows(profile, scratch);
+        for (unknown, value) in b.iter_mut().enumerate() {
+            *value = scratch[profile.row_of(unknown)];
+        }
+    }
+
+    /// The contact block of the inverse, (L_bb L_bbᵀ)⁻¹, dense and row by row in the order of the contact rows.
+    pub fn contact_compliance(&self, profile: &Profile, out: &mut Vec<f64>) {
+        let n = profile.contact;
+        let offset = profile.size() - n;
+        out.clear();
+        out.resize(n * n, 0.0);
+        // rows of the inverse of L_bb by forward substitution: inv[i][..] = (e_i − Σ_{k<i} L_ik inv[k][..]) / L_ii
+        let mut inverse = vec![0.0; n * n];
+        for i in 0..n {
+            let line = profile.slice(&self.values, offset + i);
+            let first = profile.first[offset + i] as usize;
+            let (done, rest) = inverse.split_at_mut(i * n);
+            let current = &mut rest[..=i];
+            current[i] = 1.0;
+            for k in first.max(offset) - offset..i {
+                let l = line[offset + k - first];
+                for (target, value) in current[..=k].iter_mut().zip(&done[k * n..=k * n + k]) {
+                    *target -= l * value;
+                }
+            }
+            let diagonal = line[offset + i - first];
+            current.iter_mut().for_each(|value| *value *= diagonal);
+        }
+        // out = invᵀ inv, summed over rows in order
+        for k in 0..n {
+            let row = &inverse[k * n..=k * n + k];
+            for (i, &a) in row.iter().enumerate() {
+                for (target, &b) in out[i * n..=i * n + i].iter_mut().zip(row) {
+                    *target += a * b;
+                }
+            }
+        }
+        for i in 0..n {
+            for j in i + 1..n {
+                out[i * n + j] = out[j * n + i];
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A chain of cells with two extra contact nodes at the end.
+    fn example() -> (Profile, Skyline, Vec<Vec<f64>>) {
+        let cells: Vec<u32> = (0..5).flat_map(|k| [2 * k, 2 * k + 1, 2 * k + 3, 2 * k + 2]).collect();
+        let order: Vec<u32> = vec![4, 5, 2, 3, 6, 7, 8, 9, 10, 0, 1, 11];
+        let profile = Profile::new(&order, &cells, 4, 3);
+        let mut matrix = Skyline::zero(&profile);
+        let n = profile.size();
+        let mut full = vec![vec![0.0; n]; n];
+        for corners in cells.chunks_exact(4) {
+            for a in 0..8 {
+                for b in 0..=a {
+                    let (i, j) = (2 * corners[a / 2] as usize + a % 2, 2 * corners[b / 2] as usize + b % 2);
+                    let value = if a == b { 9.0 + a as f64 } else { libm::sin((3 * a + 7 * b) as f64) };
+                    matrix.add(profile.entry(i, j), value);
+                    full[i][j] += value;
+                    if i != j {
+                        full[j][i] += value;
+                    }
+                }
+            }
+        }
+        (profile, matrix, full)
+    }
+
+    #[test]
+    fn solves_and_inverts() {
+        let (profile, mut matrix, full) = example();
+        matrix.factorise(&profile).unwrap();
+        let n = profile.size();
+        let mut scratch = Vec::new();
+        let exact: Vec<f64> = (0..n).map(|i| libm::cos(i as f64)).collect();
+        let mut b: Vec<f64> = full.iter().map(|row| dot(row, &exact)).collect();
+        matrix.solve(&profile, &mut b, &mut scratch);
+        assert!(b.iter().zip(&exact).all(|(x, y)| (x - y).abs() < 1e-12));
+        let mut compliance = Vec::new();
+        matrix.contact_compliance(&profile, &mut compliance);
+        let m = profile.contact_size();
+        for j in 0..m {
+            let mut column = vec![0.0; n];
+            column[n - m + j] = 1.0;
+            matrix.solve_rows(&profile, &mut column);
+            for i in 0..m {
+                assert!((compliance[i * m + j] - column[n - m + i]).abs() < 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn an_indefinite_matrix_is_refused() {
+        let (profile, mut matrix, _) = example();
+        matrix.add(profile.entry(4, 4), -40.0);
+        assert_eq!(matrix.factorise(&profile), Err(NotPositive));
+    }
+}

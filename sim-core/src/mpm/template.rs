@@ -1,0 +1,190 @@
+//! The discretisation of a body in its reference configuration, at unit size: cells, material points with their
+//! weights and gradients, the outline markers, the elimination order. Computed once, shared by all bodies of a shape.
+
+mod block;
+mod disc;
+mod order;
+
+pub use block::block;
+pub use disc::{disc, symmetric_disc};
+
+use super::skyline::Profile;
+
+/// A body's discretisation. Lengths are in units of the body's size (the radius of a disc).
+#[derive(Clone, Debug)]
+pub struct Template {
+    /// Reference positions of the nodes.
+    pub nodes: Vec<[f64; 2]>,
+    /// Nodes per cell: 4 (bilinear) or 16 (cubic splines).
+    pub nodes_per_cell: usize,
+    /// Nodes of each cell, `nodes_per_cell` at a time.
+    pub cells: Vec<u32>,
+    /// First material point of each cell, and the number of points at the end.
+    pub first_point: Vec<u32>,
+    /// Reference gradients ∇_X N_a at each point, `nodes_per_cell` at a time.
+    pub gradients: Vec<[f64; 2]>,
+    /// Shape functions N_a at each point, `nodes_per_cell` at a time.
+    pub values: Vec<f64>,
+    /// Reference volume of each point (area per unit thickness).
+    pub volumes: Vec<f64>,
+    /// Lumped Σ_p N_a V_p of each node.
+    pub lumped: Vec<f64>,
+    /// Outline markers, counter-clockwise.
+    pub markers: Vec<Marker>,
+    /// The nodes the markers hang on; markers name them by their place in this list.
+    pub contact_nodes: Vec<u32>,
+    /// Elimination order of the degrees of freedom and fill of the factor; contact nodes come last.
+    pub profile: Profile,
+    /// Place in the matrix of every entry of a cell's lower triangle, row by row.
+    pub entries: Vec<u32>,
+    /// Place in the contact block of component x of each contact node; y follows.
+    pub contact_rows: Vec<u32>,
+    /// Typical cell width.
+    pub cell: f64,
+}
+
+/// A point of the outline, carried by a few nodes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Marker {
+    /// Index into [`Template::contact_nodes`] and weight; the weights sum to one.
+    pub weights: Vec<(u32, f64)>,
+}
+
+/// Parts of a template that a shape must provide; the rest follows.
+struct Parts {
+    nodes: Vec<[f64; 2]>,
+    cells: Vec<[u32; 4]>,
+    /// Outline as loops of node weights, node numbers still global.
+    markers: Vec<Vec<(u32, f64)>>,
+    area: f64,
+    cell: f64,
+}
+
+impl Template {
+    /// Number of cells.
+    #[must_use]
+    pub fn cell_count(&self) -> usize {
+        self.first_point.len() - 1
+    }
+
+    /// Number of material points.
+    #[must_use]
+    pub fn point_count(&self) -> usize {
+        self.volumes.len()
+    }
+
+    /// Bilinear cells with 2 × 2 Gauss points; volumes are scaled so that their sum is the exact area.
+    fn bilinear(parts: Parts) -> Self {
+        let Parts { nodes, cells, markers, area, cell } = parts;
+        let (mut gradients, mut values, mut volumes) = (Vec::new(), Vec::new(), Vec::new());
+        for corners in &cells {
+            let x = corners.map(|node| nodes[node as usize]);
+            for (xi, eta) in GAUSS {
+                let (n, g, jacobian) = isoparametric(&x, xi, eta);
+                values.extend(n);
+                gradients.extend(g);
+                volumes.push(jacobian);
+            }
+        }
+        let scale = area / volumes.iter().sum::<f64>();
+        volumes.iter_mut().for_each(|volume| *volume *= scale);
+        let first_point = (0..=cells.len()).map(|cell| 4 * cell as u32).collect();
+        let cells: Vec<u32> = cells.into_iter().flatten().collect();
+        Self::assemble(nodes, 4, cells, first_point, gradients, values, volumes, markers, cell)
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "one call per family of shape functions")]
+    fn assemble(
+        nodes: Vec<[f64; 2]>,
+        nodes_per_cell: usize,
+        cells: Vec<u32>,
+        first_point: Vec<u32>,
+        gradients: Vec<[f64; 2]>,
+        values: Vec<f64>,
+        volumes: Vec<f64>,
+        outline: Vec<Vec<(u32, f64)>>,
+        cell: f64,
+    ) -> Self {
+        let mut lumped = vec![0.0; nodes.len()];
+        for (index, corners) in cells.chunks_exact(nodes_per_cell).enumerate() {
+            for point in first_point[index] as usize..first_point[index + 1] as usize {
+                for (a, &node) in corners.iter().enumerate() {
+                    lumped[node as usize] += values[point * nodes_per_cell + a] * volumes[point];
+                }
+            }
+        }
+        let mut contact_nodes: Vec<u32> = outline.iter().flatten().map(|&(node, _)| node).collect();
+        contact_nodes.sort_unstable();
+        contact_nodes.dedup();
+        let markers = outline
+            .into_iter()
+            .map(|weights| Marker {
+                weights: weights
+                    .into_iter()
+                    .map(|(node, weight)| {
+                        let place = contact_nodes.binary_search(&node).expect("collected just above");
+                        (place as u32, weight)
+                    })
+                    .collect(),
+            })
+            .collect();
+        let order = order::interior_first(&nodes, &cells, nodes_per_cell, &contact_nodes);
+        let profile = Profile::new(&order, &cells, nodes_per_cell, contact_nodes.len());
+        let mut entries = Vec::new();
+        for corners in cells.chunks_exact(nodes_per_cell) {
+            for row in 0..2 * nodes_per_cell {
+                for column in 0..=row {
+                    let unknown = |local: usize| 2 * corners[local / 2] as usize + local % 2;
+                    entries.push(profile.entry(unknown(row), unknown(column)) as u32);
+                }
+            }
+        }
+        let inner = profile.size() - profile.contact_size();
+        let contact_rows =
+            contact_nodes.iter().map(|&node| (profile.row_of(2 * node as usize) - inner) as u32).collect();
+        Self {
+            entries,
+            contact_rows,
+            nodes,
+            nodes_per_cell,
+            cells,
+            first_point,
+            gradients,
+            values,
+            volumes,
+            lumped,
+            markers,
+            contact_nodes,
+            profile,
+            cell,
+        }
+    }
+}
+
+const HALF_GAUSS: f64 = 0.577_350_269_189_625_8;
+/// 2 × 2 Gauss points of the unit square [−1, 1]².
+const GAUSS: [(f64, f64); 4] = [
+    (-HALF_GAUSS, -HALF_GAUSS),
+    (HALF_GAUSS, -HALF_GAUSS),
+    (HALF_GAUSS, HALF_GAUSS),
+    (-HALF_GAUSS, HALF_GAUSS),
+];
+
+/// Bilinear functions, their gradients in space and the Jacobian of the map, at (ξ, η) of a cell with corners `x`.
+fn isoparametric(x: &[[f64; 2]; 4], xi: f64, eta: f64) -> ([f64; 4], [[f64; 2]; 4], f64) {
+    let corner = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    let n = corner.map(|(a, b): (f64, f64)| 0.25 * (1.0 + a * xi) * (1.0 + b * eta));
+    let local = corner.map(|(a, b): (f64, f64)| [0.25 * a * (1.0 + b * eta), 0.25 * b * (1.0 + a * xi)]);
+    let mut j = [[0.0; 2]; 2];
+    for (position, slope) in x.iter().zip(&local) {
+        for (row, component) in j.iter_mut().zip(position) {
+            row[0] += component * slope[0];
+            row[1] += component * slope[1];
+        }
+    }
+    let det = j[0][0] * j[1][1] - j[0][1] * j[1][0];
+    let g = local.map(|slope| {
+        [(slope[0] * j[1][1] - slope[1] * j[1][0]) / det, (slope[1] * j[0][0] - slope[0] * j[0][1]) / det]
+    });
+    (n, g, det)
+}
