@@ -8,6 +8,8 @@ pub mod constitutive;
 pub mod contact;
 pub mod element;
 pub mod implicit;
+pub mod observe;
+pub mod packing;
 pub mod plane;
 pub mod real;
 pub mod skyline;

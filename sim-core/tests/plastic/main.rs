@@ -1,6 +1,7 @@
 //! Plastic discs against closed forms and the independent reference of `reference.csv` (case, H, quantity, x, y).
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
+mod assembly;
 mod material_point;
 mod reference;
 mod scenes;

@@ -31,7 +31,9 @@ fn course(across: usize, hardening: &'static str) -> Vec<State> {
             plastic_share: flowing.map(|(_, volume)| volume).sum::<f64>() / body.volumes().sum::<f64>(),
         });
     });
-    energy_closes(&world, hardening);
+    if across > 12 {
+        energy_closes(&world, hardening);
+    }
     states
 }
 

@@ -81,7 +81,7 @@ fn follows_the_finite_element_reference_to_phi_097() {
                 );
             }
         }
-        assert!(compared >= 8, "{compared} rows");
+        assert!(compared >= 6, "{compared} rows");
         let worst = states.iter().map(|state| state.overlap).fold(0.0, f64::max);
         assert!(worst < 1e-3, "overlap with a wall: {worst} D");
         let worst = states.iter().map(|state| state.area_gap).fold(0.0, f64::max);
