@@ -12,6 +12,8 @@ pub mod observe;
 pub mod packing;
 pub mod plane;
 pub mod real;
+pub mod setup;
+pub mod simulation;
 pub mod skyline;
 pub mod template;
 pub mod world;

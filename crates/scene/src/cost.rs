@@ -30,5 +30,6 @@ pub fn cost(reduced: &Reduced) -> Cost {
     match reduced {
         Reduced::CohesiveSpheres(spheres) => spheres.cost(),
         Reduced::CohesiveDiscs(discs) => discs.cost(),
+        Reduced::PlasticDiscs(discs) => discs.cost(),
     }
 }

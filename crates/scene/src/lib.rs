@@ -13,6 +13,7 @@ mod key;
 mod model;
 mod number;
 mod parse;
+pub mod plastic;
 mod preset;
 mod problem;
 mod quantity;

@@ -5,6 +5,7 @@ use serde_json::Value;
 
 use crate::description::Description;
 use crate::discs::Discs;
+use crate::plastic::Plastic;
 use crate::spheres::Spheres;
 use crate::table::{Key, object_schema};
 use crate::{Quantity, QuantityInfo};
@@ -66,13 +67,13 @@ impl Model {
         }
     }
 
-    /// The keys of its scenes; none while the engine is not part of this build.
+    /// The keys of its scenes.
     #[must_use]
     pub fn keys(self) -> &'static [Key] {
         match self {
             Self::CohesiveSpheres => Spheres::KEYS,
             Self::CohesiveDiscs => Discs::KEYS,
-            Self::PlasticDiscs => &[],
+            Self::PlasticDiscs => Plastic::KEYS,
         }
     }
 
@@ -88,7 +89,7 @@ impl Model {
         match self {
             Self::CohesiveSpheres => Spheres::QUANTITIES.iter().map(Quantity::info).collect(),
             Self::CohesiveDiscs => Discs::QUANTITIES.iter().map(Quantity::info).collect(),
-            Self::PlasticDiscs => Vec::new(),
+            Self::PlasticDiscs => Plastic::QUANTITIES.iter().map(Quantity::info).collect(),
         }
     }
 

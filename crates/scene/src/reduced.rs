@@ -5,6 +5,7 @@ use serde_json::Value;
 
 use crate::canonical::canonical;
 use crate::discs::ReducedDiscs;
+use crate::plastic::ReducedPlastic;
 use crate::spheres::ReducedSpheres;
 use crate::{Model, Problem, Problems, SceneKey};
 
@@ -17,6 +18,8 @@ pub enum Reduced {
     CohesiveSpheres(ReducedSpheres),
     /// Cohesive discs in units a = m = K_N = 1.
     CohesiveDiscs(ReducedDiscs),
+    /// Plastic discs in units d = E = ρ = 1.
+    PlasticDiscs(ReducedPlastic),
 }
 
 impl Reduced {
@@ -26,6 +29,7 @@ impl Reduced {
         match self {
             Self::CohesiveSpheres(_) => Model::CohesiveSpheres,
             Self::CohesiveDiscs(_) => Model::CohesiveDiscs,
+            Self::PlasticDiscs(_) => Model::PlasticDiscs,
         }
     }
 

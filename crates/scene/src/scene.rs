@@ -5,6 +5,7 @@ use serde_json::{Map, Value};
 
 use crate::description::{Description, read, write};
 use crate::discs::Discs;
+use crate::plastic::Plastic;
 use crate::problem::Problem;
 use crate::spheres::Spheres;
 use crate::table::unknown_name;
@@ -18,6 +19,8 @@ pub enum Scene {
     CohesiveSpheres(Spheres),
     /// Cohesive discs in a periodic cell, quasi-static.
     CohesiveDiscs(Discs),
+    /// Elastic-plastic discs that fill the space.
+    PlasticDiscs(Plastic),
 }
 
 /// Runs an expression on the description inside a scene, whichever model it is.
@@ -26,6 +29,7 @@ macro_rules! on_description {
         match $scene {
             Scene::CohesiveSpheres($inner) => $body,
             Scene::CohesiveDiscs($inner) => $body,
+            Scene::PlasticDiscs($inner) => $body,
         }
     };
 }
@@ -53,13 +57,7 @@ impl Scene {
         match model {
             Model::CohesiveSpheres => read(object).map(Self::CohesiveSpheres),
             Model::CohesiveDiscs => read(object).map(Self::CohesiveDiscs),
-            model => Err(Problem::new(
-                "model",
-                &Value::from(model.name()),
-                "this build has no engine for the model",
-                format!("use {} or {}", Model::CohesiveSpheres.name(), Model::CohesiveDiscs.name()),
-            )
-            .into()),
+            Model::PlasticDiscs => read(object).map(Self::PlasticDiscs),
         }
     }
 
@@ -89,6 +87,7 @@ impl Scene {
         match self {
             Self::CohesiveSpheres(_) => Model::CohesiveSpheres,
             Self::CohesiveDiscs(_) => Model::CohesiveDiscs,
+            Self::PlasticDiscs(_) => Model::PlasticDiscs,
         }
     }
 
@@ -98,6 +97,7 @@ impl Scene {
         match self {
             Self::CohesiveSpheres(spheres) => Reduced::CohesiveSpheres(spheres.reduce()),
             Self::CohesiveDiscs(discs) => Reduced::CohesiveDiscs(discs.reduce()),
+            Self::PlasticDiscs(discs) => Reduced::PlasticDiscs(discs.reduce()),
         }
     }
 

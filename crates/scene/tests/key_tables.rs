@@ -11,6 +11,7 @@ fn smallest_scenes() -> Vec<Value> {
     vec![
         json!({"model": "cohesive_spheres", "p": 1e5, "sigma_c": 3e6, "sigma_e": 1e10}),
         json!({"model": "cohesive_discs"}),
+        json!({"model": "plastic_discs"}),
     ]
 }
 

@@ -146,7 +146,7 @@ impl Implicit {
         let mut worst = (f64::INFINITY, f64::INFINITY);
         for iteration in 0..=numerics.iterations {
             self.linearise(world, dt)?;
-            self.detect(world, &walls, 0.5 * cell);
+            self.detect(world, &walls, 0.3 * cell);
             self.rows.build(&self.candidates, &world.bodies, &walls, &warm);
             let (residual, gap) = self.errors(world, dt, cell);
             worst = (residual, gap);
@@ -165,7 +165,9 @@ impl Implicit {
             {
                 gather_contact(body, &work.free, contact);
             }
-            let tolerance = Tolerance { impulse: numerics.impulse, sweeps: numerics.sweeps };
+            // far from the solution the contact problem need not be solved further than the next iterate is wrong
+            let impulse = (0.03 * residual).clamp(numerics.impulse, 1e-3);
+            let tolerance = Tolerance { impulse, sweeps: numerics.sweeps };
             let solve = gauss_seidel::solve(
                 &mut self.rows,
                 &mut self.contact_velocity,

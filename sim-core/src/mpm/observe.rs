@@ -2,3 +2,4 @@
 
 pub mod curvature;
 pub mod network;
+pub mod state;

@@ -44,9 +44,7 @@ impl Profile {
         }
         // the contact block is used as a dense one
         let dense = order.len() - contact;
-        for at in dense..order.len() {
-            least[at] = least[at].min(dense as u32);
-        }
+        least[dense..].iter_mut().for_each(|first| *first = (*first).min(dense as u32));
         let first: Vec<u32> = (0..2 * order.len()).map(|row| 2 * least[row / 2]).collect();
         let mut start = vec![0_u32; first.len() + 1];
         for row in 0..first.len() {

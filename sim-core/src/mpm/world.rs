@@ -27,7 +27,7 @@ impl Default for Numerics {
     fn default() -> Self {
         Self {
             theta: 1.0,
-            residual: 1e-6,
+            residual: 1e-4,
             gap: 1e-3,
             iterations: 20,
             halvings: 8,

@@ -36,10 +36,6 @@ pub fn internal_force_and_tangent(
 /// A fourth-order tensor of the plane, rows and columns (xx, xy, yx, yy).
 type Four = [[f64; 4]; 4];
 
-#[expect(
-    clippy::too_many_arguments,
-    reason = "the outputs are kept apart so that none is allocated per call"
-)]
 fn by_cell<const N: usize, const M: usize>(
     body: &Body,
     displacement: &[f64],

@@ -1,0 +1,255 @@
+//! The keys of `plastic_discs`.
+
+use serde_json::Value;
+
+use super::{HardeningMeaning, Material, Plastic, Setup};
+use crate::Problem;
+use crate::table::{Absent, Bound, Domain, Key, Word};
+
+const SETUPS: &[Word] = &[
+    Word { name: "assembly", meaning: "polydisperse discs in a box whose top wall comes down" },
+    Word {
+        name: "diametrical",
+        meaning: "one disc between a fixed bottom wall and a top wall that comes down",
+    },
+    Word {
+        name: "cell",
+        meaning: "one disc in a box as wide as itself, closed from top and bottom: the cell of a square lattice",
+    },
+];
+
+const MATERIALS: &[Word] = &[
+    Word { name: "elastic", meaning: "elastic without limit" },
+    Word { name: "plastic", meaning: "elastic up to σ_y, then linear isotropic hardening" },
+];
+
+const MEANINGS: &[Word] = &[
+    Word { name: "plastic_modulus", meaning: "dσ_y/dε_p, as E_p = E H/(E + H) takes it" },
+    Word {
+        name: "tangent_modulus",
+        meaning: "slope of the uniaxial line past yield; dσ_y/dε_p = E H/(E − H)",
+    },
+];
+
+const METHODS: &[Word] =
+    &[Word { name: "implicit", meaning: "contact solved inside each Newton iteration: the reference" }];
+
+const ROTATIONS: &[Word] = &[
+    Word { name: "jaumann", meaning: "midpoint strain, stress rotated with the material: objective" },
+    Word { name: "infinitesimal", meaning: "infinitesimal strain taken literally, no rotation" },
+];
+
+/// The key table.
+pub(super) const KEYS: &[Key] = &[
+    Key {
+        name: "setup",
+        unit: "-",
+        domain: Domain::Word(SETUPS),
+        absent: Absent::Default("\"assembly\""),
+        meaning: "what is compressed",
+        source: "2021, sections 3 and 4",
+    },
+    Key {
+        name: "material",
+        unit: "-",
+        domain: Domain::Word(MATERIALS),
+        absent: Absent::Default("\"plastic\""),
+        meaning: "what the discs are made of",
+        source: "2021, section 2",
+    },
+    Key {
+        name: "young",
+        unit: "Pa",
+        domain: Domain::Real(Bound::Excluding(0.0), Bound::Including(1e15)),
+        absent: Absent::Default("1e7"),
+        meaning: "Young's modulus E",
+        source: "2021, section 3",
+    },
+    Key {
+        name: "nu",
+        unit: "1",
+        domain: Domain::Real(Bound::Including(0.0), Bound::Including(0.495)),
+        absent: Absent::Default("0.45"),
+        meaning: "Poisson's ratio ν",
+        source: "2021, section 3",
+    },
+    Key {
+        name: "rho",
+        unit: "kg/m^3",
+        domain: Domain::Real(Bound::Excluding(0.0), Bound::Including(1e6)),
+        absent: Absent::Default("1000"),
+        meaning: "density ρ",
+        source: "2021, section 3",
+    },
+    Key {
+        name: "sigma_y",
+        unit: "Pa",
+        domain: Domain::Real(Bound::Excluding(0.0), Bound::Including(1e15)),
+        absent: Absent::Default("4e5"),
+        meaning: "yield stress σ_y; no effect if elastic",
+        source: "2021, section 3",
+    },
+    Key {
+        name: "h",
+        unit: "Pa",
+        domain: Domain::Real(Bound::Including(0.0), Bound::Including(1e15)),
+        absent: Absent::Default("1e6"),
+        meaning: "hardening constant H; no effect if elastic",
+        source: "2021, section 3",
+    },
+    Key {
+        name: "h_meaning",
+        unit: "-",
+        domain: Domain::Word(MEANINGS),
+        absent: Absent::Default("\"plastic_modulus\""),
+        meaning: "how H is meant",
+        source: "2021, (14) and reference 12",
+    },
+    Key {
+        name: "n",
+        unit: "1",
+        domain: Domain::Integer(2, 10_000),
+        absent: Absent::Default("300"),
+        meaning: "number of discs of an assembly",
+        source: "2021, section 4",
+    },
+    Key {
+        name: "d",
+        unit: "m",
+        domain: Domain::Auto(&Domain::Real(Bound::Excluding(0.0), Bound::Including(1e3))),
+        absent: Absent::Default("\"auto\""),
+        meaning: "diameter of the disc, or of the largest one; \"auto\": 4e-6 in an assembly, else 60e-6",
+        source: "2021, sections 3 and 4",
+    },
+    Key {
+        name: "size_ratio",
+        unit: "1",
+        domain: Domain::Real(Bound::Including(0.1), Bound::Including(1.0)),
+        absent: Absent::Default("0.5"),
+        meaning: "smallest over largest diameter of an assembly; diameters are uniform by area between",
+        source: "2021, section 4",
+    },
+    Key {
+        name: "phi_i",
+        unit: "1",
+        domain: Domain::Real(Bound::Including(0.05), Bound::Including(0.8)),
+        absent: Absent::Default("0.75"),
+        meaning: "solid fraction of an assembly before compression, below jamming; the paper gives none",
+        source: "choice, see docs/notation.md",
+    },
+    Key {
+        name: "seed",
+        unit: "-",
+        domain: Domain::SEED,
+        absent: Absent::Default("1"),
+        meaning: "seed of the positions in an assembly",
+        source: "choice, see docs/notation.md",
+    },
+    Key {
+        name: "mu",
+        unit: "1",
+        domain: Domain::Real(Bound::Including(0.0), Bound::Including(10.0)),
+        absent: Absent::Default("0"),
+        meaning: "Coulomb friction coefficient μ of all contacts",
+        source: "2021, section 4",
+    },
+    Key {
+        name: "wall_speed",
+        unit: "m/s",
+        domain: Domain::Auto(&Domain::Real(Bound::Excluding(0.0), Bound::Including(1e4))),
+        absent: Absent::Default("\"auto\""),
+        meaning: "speed at which the box closes; \"auto\": 2 in an assembly, else 0.5",
+        source: "2021, sections 3 and 4",
+    },
+    Key {
+        name: "phi_end",
+        unit: "1",
+        domain: Domain::Auto(&Domain::Real(Bound::Excluding(0.0), Bound::Including(1.2))),
+        absent: Absent::Default("\"auto\""),
+        meaning: "solid fraction at which the run ends; \"auto\": 0.97, none for diametrical compression",
+        source: "2021, figure 4",
+    },
+    Key {
+        name: "strain_end",
+        unit: "1",
+        domain: Domain::Auto(&Domain::Real(Bound::Excluding(0.0), Bound::Including(0.9))),
+        absent: Absent::Default("\"auto\""),
+        meaning: "nominal strain 1 − h/h_i at which the run ends at the latest; \"auto\": 0.17 for diametrical compression, else 0.45",
+        source: "2021, figure 1",
+    },
+    Key {
+        name: "method",
+        unit: "-",
+        domain: Domain::Word(METHODS),
+        absent: Absent::Default("\"implicit\""),
+        meaning: "how the motion is integrated",
+        source: "choice, see docs/notation.md",
+    },
+    Key {
+        name: "dt",
+        unit: "s",
+        domain: Domain::Auto(&Domain::Real(Bound::Excluding(0.0), Bound::Including(1e6))),
+        absent: Absent::Default("\"auto\""),
+        meaning: "time step of the implicit method; \"auto\": the wall moves by at most a quarter of the smallest cell and a thousandth of the height",
+        source: "2021, section 3: 1e-7",
+    },
+    Key {
+        name: "theta",
+        unit: "1",
+        domain: Domain::Real(Bound::Including(0.5), Bound::Including(1.0)),
+        absent: Absent::Default("1"),
+        meaning: "parameter θ of the implicit method; 1: backward Euler",
+        source: "choice, see docs/notation.md",
+    },
+    Key {
+        name: "cells",
+        unit: "1",
+        domain: Domain::Auto(&Domain::Integer(2, 64)),
+        absent: Absent::Default("\"auto\""),
+        meaning: "cells across a diameter, even; \"auto\": 12 in an assembly, else 24",
+        source: "choice, see docs/notation.md",
+    },
+    Key {
+        name: "rotation",
+        unit: "-",
+        domain: Domain::Word(ROTATIONS),
+        absent: Absent::Default("\"jaumann\""),
+        meaning: "how strain and rotation are read from the motion",
+        source: "2021, section 2",
+    },
+    Key {
+        name: "f_bar",
+        unit: "-",
+        domain: Domain::Bool,
+        absent: Absent::Default("true"),
+        meaning: "whether the stress sees the mean volume change of a cell; without it cells lock under plastic flow",
+        source: "choice, see docs/notation.md",
+    },
+    Key {
+        name: "strain_step",
+        unit: "1",
+        domain: Domain::Real(Bound::Including(1e-5), Bound::Including(0.1)),
+        absent: Absent::Default("0.002"),
+        meaning: "nominal strain between two recorded states",
+        source: "choice, see docs/notation.md",
+    },
+];
+
+/// Combinations that no run can make sense of.
+pub(super) fn conflicts(scene: &Plastic) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    let tangent = scene.h_meaning == HardeningMeaning::TangentModulus;
+    if scene.material == Material::Plastic && tangent && scene.h >= scene.young {
+        let remedy = "lower h, or give it as plastic_modulus";
+        problems.push(Problem::new("h", &Value::from(scene.h), "a tangent modulus is below young", remedy));
+    }
+    if let Some(cells) = scene.cells.filter(|cells| cells % 2 == 1) {
+        let remedy = format!("use {} or {}", cells - 1, cells + 1);
+        problems.push(Problem::new("cells", &Value::from(cells), "is not even", remedy));
+    }
+    if let (Setup::Assembly, Some(phi)) = (scene.setup, scene.phi_end.filter(|phi| *phi <= scene.phi_i)) {
+        let remedy = "raise it above phi_i";
+        problems.push(Problem::new("phi_end", &Value::from(phi), "is reached before the start", remedy));
+    }
+    problems
+}

@@ -1,0 +1,216 @@
+//! A running scene of plastic discs.
+
+mod checkpoint;
+mod outcome;
+
+use std::collections::VecDeque;
+
+use record::{Outcome, Row};
+use scene::plastic::{ReducedPlastic, Setup};
+use serde::{Deserialize, Serialize};
+
+use super::implicit::Implicit;
+use super::observe::network::Impulses;
+use super::observe::state::{Mark, State, View};
+use super::setup::{BOTTOM, Scenery, TOP, build};
+use super::world::World;
+use crate::{Options, Progress, SimError, Simulation};
+
+/// Crossings of the largest disc by an S-wave over which wall forces of an assembly are averaged.
+const WINDOW: f64 = 3.0;
+
+/// Everything that is measured on the way; part of a checkpoint.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+struct Log {
+    steps: u64,
+    states: Vec<State>,
+    marks: VecDeque<Mark>,
+    network: Impulses,
+    /// Impulses of the interval before the last state.
+    last_network: Impulses,
+    last_interval: f64,
+    since: f64,
+    next_strain: f64,
+    finished: bool,
+    status: String,
+}
+
+/// The simulation.
+pub struct PlasticDiscs {
+    scene: ReducedPlastic,
+    world: World,
+    width: f64,
+    height: f64,
+    dt: f64,
+    window: f64,
+    log: Log,
+    solver: Implicit,
+    pool: Option<rayon::ThreadPool>,
+}
+
+impl PlasticDiscs {
+    /// Builds a scene.
+    ///
+    /// # Errors
+    /// [`SimError::Scene`] when the scene cannot be built.
+    pub fn new(scene: &ReducedPlastic, options: &Options) -> Result<Self, SimError> {
+        let Scenery { world, width, height } = build(scene)?;
+        let window = if scene.setup == Setup::Assembly {
+            WINDOW / (world.law.material.shear() / world.law.material.density).sqrt()
+        } else {
+            0.0
+        };
+        let solver = Implicit::new(&world);
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(options.threads.max(1))
+            .build()
+            .map_err(|error| SimError::Internal(format!("thread pool: {error}")))?;
+        let log = Log { next_strain: scene.strain_step, ..Log::default() };
+        let dt = scene.time_step();
+        Ok(Self { scene: scene.clone(), world, width, height, dt, window, log, solver, pool: Some(pool) })
+    }
+
+    /// The world, to look at.
+    #[must_use]
+    pub fn world(&self) -> &World {
+        &self.world
+    }
+
+    /// The states recorded so far.
+    #[must_use]
+    pub fn states(&self) -> &[State] {
+        &self.log.states
+    }
+
+    fn step(&mut self) -> Result<(), SimError> {
+        let step = self.log.steps + 1;
+        self.solver
+            .step(&mut self.world, self.dt)
+            .map_err(|failure| SimError::NotConverged { step, what: failure.to_string() })?;
+        self.log.steps = step;
+        for (key, impulse) in &self.world.impulses {
+            *self.log.network.entry((key.body, key.partner)).or_insert(0.0) += impulse[0];
+        }
+        let strain = self.strain();
+        if strain >= self.log.next_strain * (1.0 - 1e-9) || strain >= self.scene.strain_end * (1.0 - 1e-9) {
+            self.record(strain);
+        }
+        Ok(())
+    }
+
+    fn strain(&self) -> f64 {
+        let walls = &self.world.walls;
+        1.0 - (walls[TOP].point[1] - walls[BOTTOM].point[1]) / self.height
+    }
+
+    /// The present state of affairs with the contact impulses of the interval before the last record.
+    fn view(&self) -> View<'_> {
+        View {
+            world: &self.world,
+            width: self.width,
+            height: self.height,
+            marks: &self.log.marks,
+            window: self.window,
+            network: &self.log.last_network,
+            interval: self.log.last_interval,
+        }
+    }
+
+    fn record(&mut self, strain: f64) {
+        let interval = self.world.time - self.log.since;
+        self.log.last_network = std::mem::take(&mut self.log.network);
+        self.log.last_interval = interval;
+        let state = self.view().state(self.log.steps);
+        self.log.marks.push_back(Mark { time: self.world.time, impulse: self.world.wall_impulse.clone() });
+        while self.log.marks.len() > 2 && self.log.marks[1].time < self.world.time - self.window {
+            self.log.marks.pop_front();
+        }
+        self.log.since = self.world.time;
+        while self.log.next_strain <= strain * (1.0 + 1e-9) {
+            self.log.next_strain += self.scene.strain_step;
+        }
+        let phi_reached = self.scene.phi_end.is_some_and(|phi| state.phi >= phi);
+        if phi_reached || strain >= self.scene.strain_end * (1.0 - 1e-9) {
+            self.log.finished = true;
+            self.log.status = if phi_reached { "phi_reached" } else { "strain_reached" }.to_owned();
+        }
+        self.log.states.push(state);
+    }
+
+    /// Steps the whole run is expected to take, from the strain covered so far.
+    fn expected_steps(&self) -> u64 {
+        let strain = self.strain();
+        let whole = self.scene.expected_strain();
+        if self.log.finished {
+            self.log.steps
+        } else if strain > 0.02 * whole && self.log.steps > 0 {
+            let estimate = self.log.steps as f64 * whole / strain;
+            (estimate as u64).max(self.log.steps + 1)
+        } else {
+            self.scene.expected_steps().max(self.log.steps + 1)
+        }
+    }
+}
+
+impl Simulation for PlasticDiscs {
+    fn advance(&mut self, steps: u64) -> Result<Progress, SimError> {
+        let pool = self.pool.take().expect("put back below");
+        let result = pool.install(|| {
+            for _ in 0..steps {
+                if self.log.finished {
+                    break;
+                }
+                self.step()?;
+            }
+            Ok(())
+        });
+        self.pool = Some(pool);
+        result.map(|()| self.progress())
+    }
+
+    fn progress(&self) -> Progress {
+        let mut live = Row::new();
+        if let Some(state) = self.log.states.last() {
+            for (name, value) in [("phi", state.phi), ("sigma", state.sigma), ("z", state.z)] {
+                // a value that is not finite is left out here and refused in the outcome
+                let _ = live.number(name, value);
+            }
+        }
+        let expected_steps = self.expected_steps();
+        let fraction =
+            if self.log.finished { 1.0 } else { (self.log.steps as f64 / expected_steps as f64).min(1.0) };
+        Progress {
+            steps: self.log.steps,
+            expected_steps,
+            fraction,
+            finished: self.log.finished,
+            particles: self.world.bodies.iter().map(|body| body.template.point_count() as u64).sum(),
+            live,
+        }
+    }
+
+    fn outcome(&self) -> Result<Outcome, SimError> {
+        outcome::outcome(self).map_err(|what| SimError::Internal(format!("outcome: {what}")))
+    }
+
+    fn save(&self) -> Vec<u8> {
+        checkpoint::save(self)
+    }
+
+    fn kernel(&self) -> String {
+        let friction = if self.scene.mu > 0.0 { "coulomb" } else { "frictionless" };
+        let material = if self.scene.sigma_y.is_some() { "von_mises" } else { "elastic" };
+        let bar = if self.scene.f_bar { "+f_bar" } else { "" };
+        format!("mpm2d+total_lagrangian+bilinear{bar}+{material}+implicit+markers+{friction}")
+    }
+}
+
+/// Continues from a checkpoint.
+///
+/// # Errors
+/// [`SimError::Checkpoint`] when the bytes are damaged or belong to another scene.
+pub fn restore(scene: &ReducedPlastic, options: &Options, bytes: &[u8]) -> Result<PlasticDiscs, SimError> {
+    let mut simulation = PlasticDiscs::new(scene, options)?;
+    checkpoint::load(&mut simulation, bytes)?;
+    Ok(simulation)
+}
