@@ -2,6 +2,7 @@
 
 use scene::Reduced;
 
+use crate::mpm::simulation::PlasticDiscs;
 use crate::spheres::Run;
 use crate::{Options, SimError, Simulation};
 
@@ -13,6 +14,7 @@ pub fn compile(scene: &Reduced, options: &Options) -> Result<Box<dyn Simulation>
     let key = scene.key().as_str().to_owned();
     match scene {
         Reduced::CohesiveSpheres(spheres) => Ok(Box::new(Run::new(spheres, key, options)?)),
+        Reduced::PlasticDiscs(discs) => Ok(Box::new(PlasticDiscs::new(discs, options)?)),
         other => Err(no_engine(other)),
     }
 }
@@ -29,6 +31,9 @@ pub fn restore(
     let key = scene.key().as_str().to_owned();
     match scene {
         Reduced::CohesiveSpheres(spheres) => Ok(Box::new(Run::restore(spheres, key, options, checkpoint)?)),
+        Reduced::PlasticDiscs(discs) => {
+            Ok(Box::new(crate::mpm::simulation::restore(discs, options, checkpoint)?))
+        }
         other => Err(no_engine(other)),
     }
 }

@@ -7,6 +7,7 @@ pub mod body;
 pub mod constitutive;
 pub mod contact;
 pub mod element;
+mod explain;
 pub mod implicit;
 pub mod observe;
 pub mod packing;
@@ -17,3 +18,5 @@ pub mod simulation;
 pub mod skyline;
 pub mod template;
 pub mod world;
+
+pub use explain::explain;

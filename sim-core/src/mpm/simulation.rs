@@ -198,11 +198,16 @@ impl Simulation for PlasticDiscs {
     }
 
     fn kernel(&self) -> String {
-        let friction = if self.scene.mu > 0.0 { "coulomb" } else { "frictionless" };
-        let material = if self.scene.sigma_y.is_some() { "von_mises" } else { "elastic" };
-        let bar = if self.scene.f_bar { "+f_bar" } else { "" };
-        format!("mpm2d+total_lagrangian+bilinear{bar}+{material}+implicit+markers+{friction}")
+        kernel(&self.scene)
     }
+}
+
+/// Name of the kernel of a scene.
+pub(super) fn kernel(scene: &ReducedPlastic) -> String {
+    let friction = if scene.mu > 0.0 { "coulomb" } else { "frictionless" };
+    let material = if scene.sigma_y.is_some() { "von_mises" } else { "elastic" };
+    let bar = if scene.f_bar { "+f_bar" } else { "" };
+    format!("mpm2d+total_lagrangian+bilinear{bar}+{material}+implicit+markers+{friction}")
 }
 
 /// Continues from a checkpoint.
