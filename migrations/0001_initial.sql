@@ -120,6 +120,7 @@ create table results (
     record text not null,                    -- JSON
     execution text not null,                 -- JSON
     outcome text not null,                   -- blob that holds the whole outcome, compressed
+    states text,                             -- blob of the states of a loading path, compressed
     stored_at integer not null,
     unique (job, digest, hardware)
 ) strict;
@@ -127,6 +128,7 @@ create table results (
 create index results_alarm on results (alarm) where alarm = 1;
 -- Whether an outcome file is still in use.
 create index results_outcome on results (outcome);
+create index results_states on results (states) where states is not null;
 
 -- Worker processes: host and boot are the identity.
 create table workers (

@@ -94,6 +94,10 @@ pub struct Args {
     #[arg(long)]
     #[serde(skip)]
     pub check_config: bool,
+    /// Print the API description (the content of api.yaml), and exit.
+    #[arg(long)]
+    #[serde(skip)]
+    pub print_api: bool,
     /// Address to listen on [default: 127.0.0.1:8300].
     #[arg(long, value_name = "ADDRESS")]
     #[serde(skip_serializing_if = "Option::is_none")]

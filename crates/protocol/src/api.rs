@@ -9,7 +9,7 @@ mod worker;
 
 pub use event::Event;
 pub use job::{AttemptEnd, AttemptView, JobView, ResultView};
-pub use page::{Page, PageQuery};
+pub use page::{Page, PageQuery, ResultPage};
 pub use point::{Explanation, PointView, Verdict};
 pub use sweep::{ControlReply, Counts, DryRun, Estimate, LeftOut, SweepState, SweepView};
 pub use worker::WorkerView;

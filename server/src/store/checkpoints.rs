@@ -135,7 +135,8 @@ impl Store {
         let rows = sqlx::query(
             "delete from dropped_blobs where hash in (select hash from dropped_blobs where since < ?1 limit 500)
              returning hash, exists (select 1 from jobs where checkpoint_hash = hash)
-                 or exists (select 1 from results where outcome = hash) needed",
+                 or exists (select 1 from results where outcome = hash)
+                 or exists (select 1 from results where states = hash) needed",
         )
         .bind(before.0)
         .fetch_all(&mut *tx)

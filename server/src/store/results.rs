@@ -28,6 +28,8 @@ pub struct NewResult {
     pub digest: String,
     /// Blob of the outcome.
     pub outcome: String,
+    /// Blob of the states of a loading path.
+    pub states: Option<String>,
     /// The physics' record.
     pub record: Row,
     /// Facts of the execution.
@@ -81,6 +83,8 @@ pub struct RunRow {
     pub execution: Row,
     /// Blob of the outcome.
     pub outcome: String,
+    /// Blob of the states of a loading path.
+    pub states: Option<String>,
     /// Determinism fault.
     pub alarm: bool,
     /// Attempt that made it.
@@ -103,6 +107,7 @@ impl RunRow {
             record: read("results.record", serde_json::from_str(&record))?,
             execution: read("results.execution", serde_json::from_str(&execution))?,
             outcome: row.try_get("outcome")?,
+            states: row.try_get("states")?,
             alarm: row.try_get("alarm")?,
             attempt: super::small(row.try_get("attempt")?),
             host: row.try_get("host")?,
@@ -118,7 +123,7 @@ impl Store {
     pub async fn complete(&self, new: &NewResult, limits: Limits, now: Moment) -> StoreResult<Stored> {
         let mut tx = self.begin().await?;
         let Some(held) = lock(&mut tx, new.job).await? else {
-            drop_blob(&mut tx, &new.outcome, now).await?;
+            let_go(&mut tx, new, now).await?;
             tx.commit().await?;
             return Ok(Stored::Not { why: LeaseWrite::NoJob, kept: false, alarm: false });
         };
@@ -127,7 +132,7 @@ impl Store {
             .fetch_one(&mut *tx)
             .await?;
         if expected != new.scene_key {
-            drop_blob(&mut tx, &new.outcome, now).await?;
+            let_go(&mut tx, new, now).await?;
             tx.commit().await?;
             return Ok(Stored::OtherScene { expected });
         }
@@ -157,7 +162,7 @@ impl Store {
     pub async fn runs(&self, sweep: i64, after: Option<u64>, limit: u32) -> StoreResult<Vec<RunRow>> {
         let rows = sqlx::query(
             "select p.point, p.scene, j.id, j.scene_key, j.reduced, j.physics_version,
-                    r.record, r.execution, r.outcome, r.alarm, r.attempt, w.host
+                    r.record, r.execution, r.outcome, r.states, r.alarm, r.attempt, w.host
              from points p
              cross join jobs j on j.seq = p.job
              cross join results r on r.seq = j.result
@@ -186,6 +191,15 @@ impl Store {
     }
 }
 
+/// Notes the files of a result that is not stored.
+async fn let_go(tx: &mut Transaction<'_, Sqlite>, new: &NewResult, now: Moment) -> StoreResult<()> {
+    drop_blob(tx, &new.outcome, now).await?;
+    if let Some(states) = &new.states {
+        drop_blob(tx, states, now).await?;
+    }
+    Ok(())
+}
+
 /// Inserts the result row, or finds the one with the same bytes, and looks for a contradiction.
 async fn keep(
     tx: &mut Transaction<'_, Sqlite>,
@@ -198,8 +212,9 @@ async fn keep(
         .fetch_one(&mut **tx)
         .await?;
     let seq: i64 = sqlx::query_scalar(
-        "insert into results (job, digest, attempt, worker, hardware, record, execution, outcome, stored_at)
-         select ?1, ?2, ?3, seq, hardware, ?4, ?5, ?6, ?7 from workers where id = ?8
+        "insert into results (job, digest, attempt, worker, hardware, record, execution, outcome, states,
+             stored_at)
+         select ?1, ?2, ?3, seq, hardware, ?4, ?5, ?6, ?7, ?8 from workers where id = ?9
          on conflict (job, digest, hardware) do update set digest = excluded.digest
          returning seq",
     )
@@ -209,6 +224,7 @@ async fn keep(
     .bind(read("record", serde_json::to_string(&new.record))?)
     .bind(read("execution", serde_json::to_string(&new.execution))?)
     .bind(&new.outcome)
+    .bind(&new.states)
     .bind(now.0)
     .bind(new.worker.to_string())
     .fetch_one(&mut **tx)
@@ -318,7 +334,7 @@ async fn late(
     .fetch_optional(&mut **tx)
     .await?;
     if was_theirs.is_none() {
-        drop_blob(tx, &new.outcome, now).await?;
+        let_go(tx, new, now).await?;
         return Ok(Stored::Not { why, kept: false, alarm: false });
     }
     let (_, alarm) = keep(tx, held, new, now).await?;

@@ -193,6 +193,20 @@ impl Store {
         rows.iter().map(SweepRow::of).collect()
     }
 
+    /// Sweeps that are not over, newest first.
+    ///
+    /// # Errors
+    /// When the database refuses.
+    pub async fn open_sweeps(&self, limit: u32) -> StoreResult<Vec<SweepRow>> {
+        let rows = sqlx::query(
+            "select * from sweeps where state in ('expanding', 'running', 'paused') order by seq desc limit ?1",
+        )
+        .bind(limit)
+        .fetch_all(&self.reader)
+        .await?;
+        rows.iter().map(SweepRow::of).collect()
+    }
+
     /// The running jobs of a sweep: as many as there are slots, never as many as there are points.
     ///
     /// # Errors
