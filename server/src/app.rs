@@ -1,5 +1,6 @@
 //! Use cases: what the service can do, without HTTP and SQL words.
 
+mod analyse;
 mod collect;
 mod expand;
 mod explain;
@@ -13,7 +14,7 @@ mod work;
 
 use std::sync::Arc;
 
-use tokio::sync::{Notify, broadcast, watch};
+use tokio::sync::{Notify, Semaphore, broadcast, watch};
 use tokio_util::sync::CancellationToken;
 
 use crate::blob::BlobStore;
@@ -25,10 +26,10 @@ use crate::scheduler::heartbeats::Heartbeats;
 use crate::scheduler::lifecycle::Limits;
 use crate::store::Store;
 
+pub use analyse::Analysis;
 pub use collect::{ResultQuery, RowStream};
 pub use filter::{Filter, Filters};
 pub use submit::{Submission, Submitted};
-pub use table::{SnapshotFormat, vtk};
 
 /// Everything the use cases need; made once, shared by handlers and reconcilers.
 pub struct Parts {
@@ -44,6 +45,9 @@ pub struct Parts {
     pub metrics: Arc<Metrics>,
 }
 
+/// Analyses computed at the same time: they take whole cores.
+const ANALYSTS: usize = 2;
+
 /// The service.
 #[derive(Clone)]
 pub struct App(Arc<Inner>);
@@ -57,6 +61,7 @@ struct Inner {
     expand: Notify,
     progress: broadcast::Sender<protocol::api::Event>,
     stopping: CancellationToken,
+    analysts: Semaphore,
 }
 
 impl App {
@@ -73,6 +78,7 @@ impl App {
             expand: Notify::new(),
             progress: broadcast::Sender::new(256),
             stopping: CancellationToken::new(),
+            analysts: Semaphore::new(ANALYSTS),
         }))
     }
 

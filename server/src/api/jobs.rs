@@ -7,14 +7,14 @@ use axum::http::header::CONTENT_TYPE;
 use axum::response::{IntoResponse, Response};
 use protocol::api::JobView;
 use protocol::{JobId, ProblemDocument};
-use record::{Packing, Table};
+use record::Packing;
 use serde::Deserialize;
 use utoipa::IntoParams;
 
 use super::extract::{Id, Params};
 use super::negotiate::{Offer, choose};
 use super::problem::Answer;
-use crate::app::{App, SnapshotFormat, vtk};
+use crate::app::App;
 use crate::error::AppError;
 
 #[derive(Deserialize, IntoParams)]
@@ -28,6 +28,12 @@ pub(super) struct FormatQuery {
 enum SeriesFormat {
     Json,
     Csv,
+}
+
+#[derive(Clone, Copy)]
+enum SnapshotFormat {
+    Json,
+    Vtk,
 }
 
 const SERIES: &[Offer<SeriesFormat>] = &[
@@ -68,7 +74,9 @@ pub(super) async fn series(
     let table = app.outcome(id).await?.series;
     Ok(match format {
         SeriesFormat::Json => Json(table).into_response(),
-        SeriesFormat::Csv => ([(CONTENT_TYPE, "text/csv; charset=utf-8")], csv_of(&table)?).into_response(),
+        SeriesFormat::Csv => {
+            ([(CONTENT_TYPE, "text/csv; charset=utf-8")], record::csv(&table)).into_response()
+        }
     })
 }
 
@@ -89,21 +97,9 @@ pub(super) async fn snapshot(
     Ok(match format {
         SnapshotFormat::Json => Json(packing).into_response(),
         SnapshotFormat::Vtk => {
-            ([(CONTENT_TYPE, "application/vtk")], vtk(&packing, &format!("job {id}"))?).into_response()
+            let text = record::vtk(&packing, &format!("job {id}"))
+                .map_err(|error| AppError::Analysis(error.to_string()))?;
+            ([(CONTENT_TYPE, "application/vtk")], text).into_response()
         }
     })
-}
-
-fn csv_of(table: &Table) -> Result<Vec<u8>, AppError> {
-    let bug = |error: csv::Error| AppError::Bug(error.to_string());
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    if !table.columns().is_empty() {
-        let head = table.columns().iter().map(|column| format!("{} [{}]", column.name, column.unit));
-        writer.write_record(head).map_err(bug)?;
-    }
-    for row in 0..table.rows() {
-        let cells = table.columns().iter().map(|column| column.values[row].get().to_string());
-        writer.write_record(cells).map_err(bug)?;
-    }
-    writer.into_inner().map_err(|error| AppError::Bug(error.to_string()))
 }
