@@ -11,6 +11,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 #[derive(Debug)]
 pub struct BlobStore {
     root: PathBuf,
+    /// Held as long as the store is open: two coordinators on one data directory would take each other's leases.
+    _lock: std::fs::File,
     counter: AtomicU64,
 }
 
@@ -31,18 +33,25 @@ pub enum BlobError {
 }
 
 impl BlobStore {
-    /// Opens the store under `data_dir`, creating it when absent.
+    /// Opens the store under `data_dir`, creating it when absent, and locks the directory.
     ///
     /// # Errors
-    /// When the folder cannot be made.
+    /// When the folder cannot be made, or another process has it.
     pub fn open(data_dir: &Path) -> std::io::Result<Self> {
+        let lock = std::fs::File::create(data_dir.join("lock"))?;
+        lock.try_lock().map_err(|refused| match refused {
+            std::fs::TryLockError::WouldBlock => {
+                std::io::Error::other("another coordinator uses it; stop that one first")
+            }
+            std::fs::TryLockError::Error(error) => error,
+        })?;
         let root = data_dir.join("blobs");
         std::fs::create_dir_all(root.join("new"))?;
         // What a crash left half written is of no use to anybody.
         for entry in std::fs::read_dir(root.join("new"))? {
             std::fs::remove_file(entry?.path())?;
         }
-        Ok(Self { root, counter: AtomicU64::new(0) })
+        Ok(Self { root, _lock: lock, counter: AtomicU64::new(0) })
     }
 
     /// Stores `bytes` durably and returns their hash. Blocking.
@@ -112,6 +121,16 @@ fn write_durably(fresh: &Path, target: &Path, bytes: &[u8]) -> std::io::Result<(
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_coordinator_at_a_time() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = BlobStore::open(folder.path()).unwrap();
+        let error = BlobStore::open(folder.path()).unwrap_err();
+        assert!(error.to_string().contains("another coordinator"), "{error}");
+        drop(first);
+        BlobStore::open(folder.path()).unwrap();
+    }
 
     #[test]
     fn bytes_come_back_and_damage_is_seen() {

@@ -34,6 +34,7 @@ pub struct Metrics {
     jobs: Family<StateLabel, Gauge>,
     open_sweeps: Gauge,
     workers: Gauge,
+    contradictions: Gauge,
     /// Sweeps submitted.
     pub sweeps: Counter,
     /// Jobs leased.
@@ -80,7 +81,14 @@ impl Default for Metrics {
         registry.register("open_sweeps", "Sweeps that are not over", open_sweeps.clone());
         let workers = Gauge::default();
         registry.register("workers_alive", "Workers heard within two leases", workers.clone());
+        let contradictions = Gauge::default();
+        registry.register(
+            "contradictory_results",
+            "Stored results that differ from another one of the same scene and hardware class",
+            contradictions.clone(),
+        );
         Self {
+            contradictions,
             requests,
             latency,
             jobs,
@@ -132,6 +140,7 @@ impl Metrics {
             self.jobs.get_or_create(&StateLabel { state }).set(i64::try_from(count).unwrap_or(i64::MAX));
         }
         self.open_sweeps.set(i64::try_from(totals.open_sweeps).unwrap_or(i64::MAX));
+        self.contradictions.set(i64::try_from(totals.alarms).unwrap_or(i64::MAX));
         self.workers.set(i64::try_from(workers).unwrap_or(i64::MAX));
         let mut text = String::new();
         encode(&mut text, &self.registry)?;

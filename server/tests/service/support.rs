@@ -79,9 +79,11 @@ impl Coordinator {
 
     /// Stops without a goodbye and starts again on the same disk.
     pub async fn restarted(self) -> Self {
-        self.app.store().close().await;
-        let parts = server::parts(self.config.clone(), Arc::new(self.clock.clone())).await.unwrap();
-        Self { app: App::new(parts), ..self }
+        let Self { app, clock, folder, config } = self;
+        app.store().close().await;
+        drop(app);
+        let parts = server::parts(config.clone(), Arc::new(clock.clone())).await.unwrap();
+        Self { app: App::new(parts), clock, folder, config }
     }
 
     pub fn pass(&self, seconds: f64) {
