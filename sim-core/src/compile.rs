@@ -2,6 +2,7 @@
 
 use scene::Reduced;
 
+use crate::consolidation::Consolidation;
 use crate::mpm::simulation::PlasticDiscs;
 use crate::spheres::Run;
 use crate::{Options, SimError, Simulation};
@@ -15,7 +16,7 @@ pub fn compile(scene: &Reduced, options: &Options) -> Result<Box<dyn Simulation>
     match scene {
         Reduced::CohesiveSpheres(spheres) => Ok(Box::new(Run::new(spheres, key, options)?)),
         Reduced::PlasticDiscs(discs) => Ok(Box::new(PlasticDiscs::new(discs, options)?)),
-        other => Err(no_engine(other)),
+        Reduced::CohesiveDiscs(discs) => Ok(Box::new(Consolidation::new(discs, key, options)?)),
     }
 }
 
@@ -34,15 +35,8 @@ pub fn restore(
         Reduced::PlasticDiscs(discs) => {
             Ok(Box::new(crate::mpm::simulation::restore(discs, options, checkpoint)?))
         }
-        other => Err(no_engine(other)),
-    }
-}
-
-/// The scene is valid, but nothing here can run it.
-pub(crate) fn no_engine(scene: &Reduced) -> SimError {
-    SimError::Scene {
-        field: "model".to_owned(),
-        problem: format!("{} has no engine in this version", scene.model().name()),
-        remedy: "use another model".to_owned(),
+        Reduced::CohesiveDiscs(discs) => {
+            Ok(Box::new(Consolidation::from_checkpoint(discs, key, options, checkpoint)?))
+        }
     }
 }

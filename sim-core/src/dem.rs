@@ -3,6 +3,8 @@
 //! Everything outside this engine talks to [`Dynamics`] and reads a [`View`]; the memory layout of particles and
 //! contacts is known to [`crate::state`] alone.
 
+mod cell;
+mod discs;
 mod dynamics;
 mod engine;
 mod kernel;
@@ -16,6 +18,9 @@ mod threads;
 mod time_step;
 mod view;
 
+pub use crate::boundary::{CellControl, PeriodicCell};
+pub use cell::{CellDynamics, CellPicture, CellResiduals};
+pub use discs::{DiscParameters, InitialDiscs, discs, restore_discs};
 pub use dynamics::{Counters, Drag, Dynamics, Fault, InitialState, Motion, SphereParameters};
 pub use spheres::{Laws, restore_spheres, spheres};
 pub use time_step::largest_step;

@@ -41,6 +41,6 @@ pub fn explain(scene: &Reduced) -> Result<Explanation, SimError> {
     match scene {
         Reduced::CohesiveSpheres(spheres) => crate::spheres::explain(spheres),
         Reduced::PlasticDiscs(discs) => Ok(crate::mpm::explain(discs)),
-        other => Err(crate::compile::no_engine(other)),
+        Reduced::CohesiveDiscs(discs) => crate::consolidation::explain(discs),
     }
 }

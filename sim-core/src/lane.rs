@@ -69,6 +69,12 @@ pub trait Lane: Copy {
     /// `to` points to `WIDTH` writable numbers.
     unsafe fn store(self, to: *mut f64);
 
+    /// Reads `WIDTH` numbers at scattered places of a table.
+    ///
+    /// # Safety
+    /// `at` points to `WIDTH` indices inside the table.
+    unsafe fn gather(table: *const f64, at: *const u32) -> Self;
+
     /// Difference of one record of two bodies, `b − a`, component by component (the fourth one is dropped).
     ///
     /// # Safety

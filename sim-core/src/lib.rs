@@ -7,6 +7,7 @@
 
 mod boundary;
 mod compile;
+pub mod consolidation;
 pub mod contact;
 mod control;
 pub mod dem;

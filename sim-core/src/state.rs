@@ -5,8 +5,10 @@
 
 mod chunk;
 mod contacts;
+mod discs;
 mod particles;
 
 pub use chunk::{Chunk, chunk_bounds};
 pub use contacts::{ContactList, WallList};
+pub use discs::Discs;
 pub use particles::{Body, Equal, Force, Grains};

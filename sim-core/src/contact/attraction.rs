@@ -1,9 +1,11 @@
 //! Attraction between bodies.
 
 mod constant;
+mod finite_range;
 mod none;
 
 pub use constant::Constant;
+pub use finite_range::FiniteRange;
 pub use none::NoAttraction;
 
 use crate::lane::Lane;

@@ -1,8 +1,10 @@
 //! Dissipation along the normal.
 
+mod lagged;
 mod none;
 mod viscous;
 
+pub use lagged::Lagged;
 pub use none::NoDamping;
 pub use viscous::{Viscous, damping_ratio};
 

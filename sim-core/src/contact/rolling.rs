@@ -1,8 +1,10 @@
 //! Resistance to rolling.
 
 mod none;
+mod spring_slider;
 
 pub use none::NoRolling;
+pub use spring_slider::SpringSlider;
 
 use crate::lane::Lane;
 use crate::space::Space;

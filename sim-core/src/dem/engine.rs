@@ -3,6 +3,7 @@
 use std::marker::PhantomData;
 
 use super::kernel::{Pass, Path};
+use super::lists::NEAR_MARGIN;
 use super::motion::DragRates;
 use super::{Drag, InitialState};
 use crate::boundary::Boundary;
@@ -49,6 +50,8 @@ pub(super) struct Lists {
     pub budget: Vec<f64>,
     /// Displacement each wall may make before the next refresh [d].
     pub wall_budget: [f64; 6],
+    /// Relative displacement by deformation that a pair may make before the next refresh [d].
+    pub strain_budget: f64,
     /// Largest share of a budget that may be used up.
     pub used: f64,
     pub cells: CellList,
@@ -128,6 +131,11 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     /// Number of particles.
     pub(super) fn len(&self) -> usize {
         self.bodies.len()
+    }
+
+    /// Largest distance of the centres of a listed or near pair [d].
+    pub(super) fn pair_reach(&self) -> f64 {
+        2.0 * (self.grains.largest_radius() + NEAR_MARGIN) + self.law.range()
     }
 
     /// The force pass over the present state.

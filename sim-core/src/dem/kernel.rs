@@ -79,6 +79,8 @@ pub struct Pass<'a, S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
 pub struct Evaluated<S: Space, L: Lane> {
     /// Unit normal from a to b.
     pub normal: S::Vector<L>,
+    /// Vector from a to b, nearest image [d].
+    pub separation: S::Vector<L>,
     /// Overlap [d].
     pub overlap: L,
     /// Parts of the force.
@@ -145,7 +147,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
                 torque_b = torque_b.add_scaled(L::splat(-1.0), response.rolling);
             }
         }
-        Evaluated { normal, overlap, response, force, torque_a, torque_b }
+        Evaluated { normal, separation, overlap, response, force, torque_a, torque_b }
     }
 
     /// Contacts with one wall (a particles; the wall has no index).
@@ -204,7 +206,15 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
                 torque_a = torque_a.add(response.rolling);
             }
         }
-        Evaluated { normal, overlap, response, force, torque_a, torque_b: none }
+        Evaluated {
+            normal,
+            separation: normal.scale(distance),
+            overlap,
+            response,
+            force,
+            torque_a,
+            torque_b: none,
+        }
     }
 
     /// Adds the forces of pair contacts; those of b go to `forces_b` at `b_target`.
@@ -222,11 +232,19 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         let force = S::vector_record(contact.force);
         // SAFETY: the caller vouches for the indices; so below.
         unsafe { L::scatter_pair::<0, OPPOSITE>(self.forces, a, forces_b, b_target, force, force) };
-        if C::NEEDS_SPIN {
-            let torque_a = S::spin_record(contact.torque_a);
+        if C::NEEDS_SPIN || B::DEFORMS {
+            let mut torque_a = S::spin_record(contact.torque_a);
+            if B::DEFORMS {
+                const { assert!(!B::DEFORMS || S::DIMENSION == 2, "only the plane has room for the virial") };
+                // A planar torque leaves the first two numbers of its row free: they take F_α r_α of the contacts a
+                // particle owns. Sums per particle, unlike sums per list, do not depend on what else is listed.
+                let separation = S::vector_record(contact.separation);
+                torque_a[0] = L::splat(0.0).sub(force[0].mul(separation[0]));
+                torque_a[1] = L::splat(0.0).sub(force[1].mul(separation[1]));
+            }
             // SAFETY: see above.
             unsafe {
-                if G::EQUAL && !C::ROLLS {
+                if G::EQUAL && !C::ROLLS && !B::DEFORMS {
                     L::scatter_pair::<1, SAME>(self.forces, a, forces_b, b_target, torque_a, torque_a);
                 } else {
                     let torque_b = S::spin_record(contact.torque_b);
@@ -302,6 +320,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             // SAFETY: see above.
             unsafe { self.outer::<f64>(chunk, k / GROUP, k % GROUP) };
         }
+        if B::DEFORMS {
+            // SAFETY: this thread owns the forces of the chunk.
+            chunk.virial = unsafe { self.virial(chunk.start, chunk.end) };
+        }
     }
 
     /// One group of contacts with a wall: adds to the particles, returns the normal forces.
@@ -325,6 +347,22 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             }
             contact.response.normal
         }
+    }
+
+    /// Σ F_α r_α of the contacts owned by the particles of a chunk [k_n d]: four partial sums by slot, so that the
+    /// order is fixed and additions overlap.
+    #[inline(always)]
+    unsafe fn virial(&self, start: usize, end: usize) -> [f64; 3] {
+        let mut parts = [[0.0; 2]; 4];
+        for slot in start..end {
+            // SAFETY: the caller owns these forces.
+            let torque = unsafe { &(*self.forces.add(slot)).torque };
+            let part = &mut parts[slot % 4];
+            part[0] += torque[0];
+            part[1] += torque[1];
+        }
+        let sum = |axis: usize| (parts[0][axis] + parts[1][axis]) + (parts[2][axis] + parts[3][axis]);
+        [sum(0), sum(1), 0.0]
     }
 
     /// One group of contacts with later chunks.

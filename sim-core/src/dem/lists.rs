@@ -13,7 +13,7 @@ use crate::state::{Body, Chunk, ContactList, Grains};
 pub(super) const SORT_EVERY: u64 = 8192;
 
 /// Margin of a particle in the near list [d]: pairs with a gap below twice this are near.
-const NEAR_MARGIN: f64 = 0.12;
+pub(super) const NEAR_MARGIN: f64 = 0.12;
 
 /// Smallest and largest displacement budget of a particle between two refreshes [d].
 const LEAST_BUDGET: f64 = 4e-4;
@@ -86,6 +86,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     /// Sorts the particles along the space-filling curve and rebuilds all lists.
     pub(super) fn sort(&mut self) {
         let (mut pairs, mut walls) = self.carried();
+        if B::DEFORMS {
+            for body in &mut self.bodies {
+                let inside = self.boundary.inside(point(body));
+                body.position[..3].copy_from_slice(&inside);
+            }
+        }
         let order = spatial_order(self.len(), |slot| point(&self.bodies[slot]));
         let mut slot_of = vec![0_u32; self.len()];
         for (slot, &old) in (0_u32..).zip(&order) {
@@ -120,13 +126,25 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         self.lists.near_at = bodies.iter().map(point).collect();
         let reach = 2.0 * NEAR_MARGIN + self.law.range();
         let size = 2.0 * self.grains.largest_radius() + reach;
-        self.lists.cells.build(bodies.len(), size, |slot| point(&bodies[slot]));
+        self.boundary.mark();
+        let boundary = &self.boundary;
+        let mut places: Vec<[f64; 3]> = bodies.iter().map(|body| boundary.inside(point(body))).collect();
+        // Images near the borders of a periodic space join the search; `real` tells whose they are.
+        let mut real: Vec<u32> = (0..bodies.len() as u32).collect();
+        for slot in 0..bodies.len() {
+            boundary.images(places[slot], size, &mut |image| {
+                places.push(image);
+                real.push(slot as u32);
+            });
+        }
+        self.lists.cells.build(places.len(), size, |place| places[place]);
         let (cells, grains) = (&self.lists.cells, &self.grains);
         for chunk in &mut self.chunks {
             near_pairs(
                 cells,
                 chunk.start..chunk.end,
-                |slot| point(&bodies[slot]),
+                |place| places[place],
+                |place| real[place as usize],
                 |i, j| grains.radius(i) + grains.radius(j) + reach,
                 &mut chunk.near_start,
                 &mut chunk.near,
@@ -149,12 +167,22 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         if let Some(walls) = &self.walls {
             self.lists.wall_budget = walls.velocity.map(|velocity| budget_of(velocity.abs()));
         }
+        self.lists.strain_budget = if B::DEFORMS {
+            let strain = steps * self.dt * self.boundary.fastest();
+            (1.5 * strain * self.pair_reach()).clamp(1e-9, LEAST_BUDGET)
+        } else {
+            0.0
+        };
+        let boundary = &self.boundary;
+        let margin =
+            NEAR_MARGIN - 0.5 * (boundary.strain_since_mark(self.pair_reach()) + self.lists.strain_budget);
         let strayed = self.lists.near_at.len() != self.len()
             || self.bodies.iter().zip(&self.lists.near_at).zip(&self.lists.budget).any(
                 |((body, from), budget)| {
+                    let from = boundary.since_mark(*from);
                     let moved: f64 = (0..3).map(|k| (body.position[k] - from[k]).powi(2)).sum();
                     // Written so that a NaN strays.
-                    let stays = moved.sqrt() + budget < NEAR_MARGIN;
+                    let stays = moved.sqrt() + budget < margin;
                     !stays
                 },
             );
@@ -167,8 +195,9 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         self.lists.used = 0.0;
 
         let (bodies, budget, law) = (&self.bodies, &self.lists.budget, &self.law);
+        let slack = self.lists.strain_budget;
         for chunk in &mut self.chunks {
-            list_pairs::<S, G, C>(chunk, bodies, budget, &self.grains, law);
+            list_pairs::<S, G, B, C>(chunk, bodies, budget, &self.grains, &self.boundary, slack, law);
             if let Some(walls) = &self.walls {
                 list_walls::<S, G, C>(chunk, bodies, budget, &self.grains, walls, &self.lists.wall_budget);
             }
@@ -195,11 +224,13 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
 }
 
 /// Lists the pairs of a chunk that may touch, keeping the memory of those that were listed.
-fn list_pairs<S: Space, G: Grains, C: ContactLaw<S>>(
+fn list_pairs<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>>(
     chunk: &mut Chunk,
     bodies: &[Body],
     budget: &[f64],
     grains: &G,
+    boundary: &B,
+    slack: f64,
     law: &C,
 ) {
     let [inner, outer] = &mut chunk.spare;
@@ -210,10 +241,10 @@ fn list_pairs<S: Space, G: Grains, C: ContactLaw<S>>(
         let k = i - chunk.start;
         let near = &chunk.near[chunk.near_start[k] as usize..chunk.near_start[k + 1] as usize];
         let x = &bodies[i].position;
-        let reach = grains.radius(i) + budget[i] + law.range();
+        let reach = grains.radius(i) + budget[i] + law.range() + slack;
         for &j in near {
             let y = &bodies[j as usize].position;
-            let (dx, dy, dz) = (y[0] - x[0], y[1] - x[1], y[2] - x[2]);
+            let [dx, dy, dz] = boundary.separation([y[0] - x[0], y[1] - x[1], y[2] - x[2]]);
             let cutoff = reach + grains.radius(j as usize) + budget[j as usize];
             if dx * dx + dy * dy + dz * dz < cutoff * cutoff {
                 let pair = (i as u32, j);

@@ -112,6 +112,119 @@ fn free<G: Grains, const SPIN: bool>(
     rush[0].max(rush[1]).max(rush[2])
 }
 
+/// What a deforming space does to its particles in one step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Deformation {
+    /// Strain rates at t_n + dt/2 [1/τ].
+    pub rate: [f64; 3],
+    /// Coefficient c of the local damping: every component of force and torque counts 1 − c sign(F v) [1].
+    pub local_damping: f64,
+}
+
+/// As [`advance`], in a space that deforms: x(t+dt) = x + dt (v + e x), v relative to the deformation.
+///
+/// # Safety
+/// `path` was chosen by [`Path::choose`] on this machine.
+pub unsafe fn advance_with_space<G: Grains, const SPIN: bool>(
+    path: Path,
+    bodies: &mut [Body],
+    forces: &mut [Force],
+    first: usize,
+    grains: &G,
+    deformation: Deformation,
+    dt: f64,
+) -> f64 {
+    // SAFETY: the path was detected.
+    unsafe {
+        match path {
+            Path::Plain => with_space::<G, SPIN>(bodies, forces, first, grains, deformation, dt),
+            #[cfg(target_arch = "x86_64")]
+            Path::PlainFma => with_space_fma::<G, SPIN>(bodies, forces, first, grains, deformation, dt),
+            #[cfg(target_arch = "x86_64")]
+            Path::Avx2 => with_space_avx2::<G, SPIN>(bodies, forces, first, grains, deformation, dt),
+        }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "fma")]
+fn with_space_fma<G: Grains, const SPIN: bool>(
+    bodies: &mut [Body],
+    forces: &mut [Force],
+    first: usize,
+    grains: &G,
+    deformation: Deformation,
+    dt: f64,
+) -> f64 {
+    with_space::<G, SPIN>(bodies, forces, first, grains, deformation, dt)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,fma")]
+fn with_space_avx2<G: Grains, const SPIN: bool>(
+    bodies: &mut [Body],
+    forces: &mut [Force],
+    first: usize,
+    grains: &G,
+    deformation: Deformation,
+    dt: f64,
+) -> f64 {
+    with_space::<G, SPIN>(bodies, forces, first, grains, deformation, dt)
+}
+
+#[inline(always)]
+fn with_space<G: Grains, const SPIN: bool>(
+    bodies: &mut [Body],
+    forces: &mut [Force],
+    first: usize,
+    grains: &G,
+    deformation: Deformation,
+    dt: f64,
+) -> f64 {
+    if deformation.local_damping == 0.0 {
+        follow::<G, SPIN>(bodies, forces, first, grains, deformation.rate, dt, |force, _| force)
+    } else {
+        let strength = deformation.local_damping;
+        let damped = |force: f64, velocity: f64| {
+            let power = force * velocity;
+            let opposes = if power > 0.0 { -strength } else { strength };
+            let opposes = if power == 0.0 { 0.0 } else { opposes };
+            force.mul_add(opposes, force)
+        };
+        follow::<G, SPIN>(bodies, forces, first, grains, deformation.rate, dt, damped)
+    }
+}
+
+#[inline(always)]
+fn follow<G: Grains, const SPIN: bool>(
+    bodies: &mut [Body],
+    forces: &mut [Force],
+    first: usize,
+    grains: &G,
+    rate: [f64; 3],
+    dt: f64,
+    damped: impl Fn(f64, f64) -> f64,
+) -> f64 {
+    let mut rush = [0.0_f64; 2];
+    for (k, (body, force)) in bodies.iter_mut().zip(forces).enumerate() {
+        let per_mass = dt * grains.inverse_mass(first + k);
+        let inverse_budget = body.position[3];
+        for c in 0..2 {
+            body.velocity[c] = damped(force.force[c], body.velocity[c]).mul_add(per_mass, body.velocity[c]);
+            let carried = body.position[c].mul_add(rate[c], body.velocity[c]);
+            body.position[c] = carried.mul_add(dt, body.position[c]);
+            let hurry = body.velocity[c].abs() * inverse_budget;
+            rush[c] = if hurry > rush[c] { hurry } else { rush[c] };
+        }
+        if SPIN {
+            let per_inertia = dt * grains.inverse_inertia(first + k);
+            body.spin[2] = damped(force.torque[2], body.spin[2]).mul_add(per_inertia, body.spin[2]);
+        }
+        *force = Force::default();
+    }
+    rush[0].max(rush[1])
+}
+
 /// v(t+dt/2) = [v(t−dt/2)(1 − γ dt/2) + dt a]/(1 + γ dt/2): drag centred at t, second order.
 #[inline(always)]
 fn dragged<G: Grains, const SPIN: bool>(

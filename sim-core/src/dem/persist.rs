@@ -23,6 +23,8 @@ pub(super) struct Persisted {
     pub dt: f64,
     pub time: f64,
     pub walls: Option<ServoWalls>,
+    /// The boundary, encoded.
+    pub boundary: Vec<u8>,
     /// x, v, ω of every slot.
     pub bodies: Vec<[[f64; 3]; 3]>,
     pub original: Vec<u32>,
@@ -82,6 +84,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             dt: self.dt,
             time: self.time,
             walls: self.walls.clone(),
+            boundary: postcard::to_allocvec(&self.boundary)
+                .expect("a boundary of plain numbers always encodes"),
             bodies: self
                 .bodies
                 .iter()

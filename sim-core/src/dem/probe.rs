@@ -12,7 +12,7 @@ use crate::space::{Space, Vector};
 use crate::state::{Body, ContactList, Force, Grains};
 
 /// Most memory slots a law may have.
-const MOST_SLOTS: usize = 8;
+pub(super) const MOST_SLOTS: usize = 8;
 
 /// Forces at t_n, by slot.
 pub(super) struct Probe {

@@ -3,7 +3,7 @@
 use super::Fault;
 use super::engine::Dem;
 use super::lists::{SORT_EVERY, speed};
-use super::motion::advance;
+use super::motion::{Deformation, advance, advance_with_space};
 use super::threads::{Barrier, Shared};
 use crate::boundary::Boundary;
 use crate::contact::ContactLaw;
@@ -75,7 +75,23 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             let bodies = std::slice::from_raw_parts_mut(bodies.add(start), end - start);
             let forces = std::slice::from_raw_parts_mut(forces.add(start), end - start);
             let (grains, drag, dt) = (&shared.grains, shared.drag_rates(), shared.dt);
-            let rush = if C::NEEDS_SPIN {
+            let rush = if B::DEFORMS {
+                let rate = shared.boundary.next_rate(shared.virial(), dt);
+                let deformation = Deformation { rate, local_damping: shared.boundary.local_damping() };
+                if C::NEEDS_SPIN {
+                    advance_with_space::<G, true>(shared.path, bodies, forces, start, grains, deformation, dt)
+                } else {
+                    advance_with_space::<G, false>(
+                        shared.path,
+                        bodies,
+                        forces,
+                        start,
+                        grains,
+                        deformation,
+                        dt,
+                    )
+                }
+            } else if C::NEEDS_SPIN {
                 advance::<G, true>(shared.path, bodies, forces, start, grains, drag, dt)
             } else {
                 advance::<G, false>(shared.path, bodies, forces, start, grains, drag, dt)
@@ -101,6 +117,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                 rush = rush.max(walls.velocity[wall].abs() / self.lists.wall_budget[wall]);
             }
         }
+        if B::DEFORMS {
+            self.boundary.advance(self.virial(), dt);
+            rush = rush.max(self.boundary.fastest() * self.pair_reach() / self.lists.strain_budget);
+        }
         self.step += 1;
         self.time += dt;
         if self.step.is_multiple_of(LOOK_EVERY) {
@@ -121,9 +141,23 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         Ok(())
     }
 
+    /// Σ F_α r_α over all contacts [k_n d].
+    pub(super) fn virial(&self) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for chunk in &self.chunks {
+            for (total, part) in sum.iter_mut().zip(chunk.virial) {
+                *total += part;
+            }
+        }
+        sum
+    }
+
     /// Whether the state makes sense.
     pub(super) fn look(&self) -> Result<(), Fault> {
         let fault = |what: String| Err(Fault { step: self.step, what });
+        if let Some(what) = self.boundary.fault() {
+            return fault(what);
+        }
         for (slot, body) in self.bodies.iter().enumerate() {
             let (x, v, w) = (&body.position, &body.velocity, &body.spin);
             if !(0..3).all(|k| x[k].is_finite() && v[k].is_finite() && w[k].is_finite()) {

@@ -7,7 +7,7 @@
 use std::arch::x86_64::{
     __m256d, _CMP_LT_OQ, _mm256_add_pd, _mm256_and_pd, _mm256_andnot_pd, _mm256_blendv_pd, _mm256_cmp_pd,
     _mm256_div_pd, _mm256_fmadd_pd, _mm256_fnmadd_pd, _mm256_load_pd, _mm256_loadu_pd, _mm256_max_pd,
-    _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_permute2f128_pd, _mm256_set1_pd,
+    _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_permute2f128_pd, _mm256_set1_pd, _mm256_setr_pd,
     _mm256_setzero_pd, _mm256_sqrt_pd, _mm256_store_pd, _mm256_storeu_pd, _mm256_sub_pd, _mm256_unpackhi_pd,
     _mm256_unpacklo_pd,
 };
@@ -161,6 +161,14 @@ impl Lane for Avx2 {
     unsafe fn store(self, to: *mut f64) {
         // SAFETY: the caller vouches for four writable numbers.
         unsafe { _mm256_storeu_pd(to, self.0) }
+    }
+    #[inline(always)]
+    unsafe fn gather(table: *const f64, at: *const u32) -> Self {
+        // SAFETY: the caller vouches for the indices.
+        unsafe {
+            let value = |lane: usize| *table.add(*at.add(lane) as usize);
+            Self(_mm256_setr_pd(value(0), value(1), value(2), value(3)))
+        }
     }
 
     #[inline(always)]

@@ -82,6 +82,11 @@ impl Lane for f64 {
         // SAFETY: the caller vouches for one writable number.
         unsafe { *to = self }
     }
+    #[inline(always)]
+    unsafe fn gather(table: *const f64, at: *const u32) -> Self {
+        // SAFETY: the caller vouches for the index.
+        unsafe { *table.add(*at as usize) }
+    }
 
     #[inline(always)]
     unsafe fn difference<const FIELD: usize>(bodies: *const Body, a: *const u32, b: *const u32) -> [Self; 3] {

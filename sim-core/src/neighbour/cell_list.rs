@@ -94,11 +94,13 @@ impl CellList {
 }
 
 /// Neighbours of particles `range`: those with a higher index closer than `cutoff(i, j)`, ascending, one run per
-/// particle (`starts` gets one entry per particle and the end).
+/// particle (`starts` gets one entry per particle and the end). `real` gives the particle that a place in the cells is
+/// an image of.
 pub fn near_pairs(
     cells: &CellList,
     range: std::ops::Range<usize>,
     position: impl Fn(usize) -> [f64; 3],
+    real: impl Fn(u32) -> u32,
     cutoff: impl Fn(usize, usize) -> f64,
     starts: &mut Vec<u32>,
     near: &mut Vec<u32>,
@@ -109,9 +111,10 @@ pub fn near_pairs(
     for i in range {
         let from = near.len();
         let x = position(i);
-        cells.around(x, |j| {
+        cells.around(x, |place| {
+            let j = real(place);
             if j as usize > i {
-                let y = position(j as usize);
+                let y = position(place as usize);
                 let square = (y[0] - x[0]).powi(2) + (y[1] - x[1]).powi(2) + (y[2] - x[2]).powi(2);
                 if square < cutoff(i, j as usize).powi(2) {
                     near.push(j);
@@ -144,7 +147,7 @@ mod tests {
             let mut cells = CellList::default();
             cells.build(positions.len(), cutoff, |i| positions[i]);
             let (mut starts, mut near) = (Vec::new(), Vec::new());
-            near_pairs(&cells, 0..positions.len(), |i| positions[i], |_, _| cutoff, &mut starts, &mut near);
+            near_pairs(&cells, 0..positions.len(), |i| positions[i], |i| i, |_, _| cutoff, &mut starts, &mut near);
             let mut found = Vec::new();
             for i in 0..positions.len() {
                 for &j in &near[starts[i] as usize..starts[i + 1] as usize] {

@@ -45,6 +45,8 @@ pub struct Chunk {
     pub incoming: Vec<(u32, u32, u32)>,
     /// Contacts with each wall.
     pub walls: [WallList; 6],
+    /// Σ F_α r_α of the contacts its particles own, where space deforms [k_n d].
+    pub virial: [f64; 3],
     /// Force of the particles of this chunk on each wall, positive outwards [k_n d].
     pub wall_force: [f64; 6],
     /// Neighbours of particle `start + k`: `near[near_start[k]..near_start[k + 1]]`, ascending, above the particle.

@@ -1,0 +1,90 @@
+//! Where a run starts.
+
+use rand_pcg::Pcg64;
+use scene::discs::{Assembly, ReducedDiscs};
+
+use super::scales::Scales;
+use crate::SimError;
+use crate::boundary::CellControl;
+use crate::dem::{DiscParameters, InitialDiscs};
+use crate::packing::hard_discs::{FluidRecipe, hard_disc_fluid, maxwell_velocities};
+
+/// Metropolis sweeps of the fluid.
+const SWEEPS: usize = 300;
+
+/// Streams of random numbers.
+const POSITIONS: u128 = 1;
+const VELOCITIES: u128 = 2;
+
+/// Laws of a scene.
+#[must_use]
+pub fn parameters(scene: &ReducedDiscs) -> DiscParameters {
+    DiscParameters {
+        f0: scene.f0,
+        d0: scene.d0,
+        restitution: scene.en,
+        kt: scene.kt,
+        mu: scene.mu,
+        kr: scene.kr,
+        mu_r: scene.mu_r,
+    }
+}
+
+/// The hard-disc fluid of a scene, with velocities for type 2.
+///
+/// # Errors
+/// [`SimError::Scene`] when the fluid cannot be made or is too small for its cell.
+pub fn initial_state(scene: &ReducedDiscs) -> Result<InitialDiscs, SimError> {
+    let refuse = |field: &str, problem: String, remedy: &str| SimError::Scene {
+        field: field.to_owned(),
+        problem,
+        remedy: remedy.to_owned(),
+    };
+    let discs = usize::try_from(scene.n)
+        .map_err(|_| refuse("n", format!("{} discs do not fit into memory", scene.n), "lower n"))?;
+    let recipe = FluidRecipe {
+        discs,
+        solid_fraction: scene.phi_i,
+        size_ratio: scene.size_ratio,
+        clearance: 1.01 * scene.d0,
+        sweeps: SWEEPS,
+    };
+    let mut random = Pcg64::new(u128::from(scene.seed), POSITIONS);
+    let fluid = hard_disc_fluid(&recipe, &mut random)
+        .map_err(|error| refuse("phi_i", error.to_string(), "lower phi_i"))?;
+    let velocities = if scene.assembly == Assembly::Type2 {
+        // V* = √(F0 D0/m).
+        let speed = scene.v0 * libm::sqrt(scene.f0 * scene.d0);
+        maxwell_velocities(&fluid.radii, speed, &mut Pcg64::new(u128::from(scene.seed), VELOCITIES))
+    } else {
+        vec![[0.0; 2]; discs]
+    };
+    let control = match scene.assembly {
+        Assembly::Type2 => CellControl::Fixed,
+        Assembly::Type1 | Assembly::Cohesionless => {
+            pressure_control(scene, scene.p0, assembly_mass(scene, &fluid.radii))
+        }
+    };
+    Ok(InitialDiscs {
+        positions: fluid.positions,
+        radii: fluid.radii,
+        velocities,
+        spins: vec![0.0; discs],
+        edges: [fluid.edge; 2],
+        control,
+    })
+}
+
+/// Mass of the cell coordinate at the first pressure [m].
+#[must_use]
+pub fn assembly_mass(scene: &ReducedDiscs, radii: &[f64]) -> f64 {
+    scene.assembly_cell_mass.unwrap_or_else(|| radii.iter().map(|r| 4.0 * r * r).sum())
+}
+
+/// Stress control at a pressure P* (P/K_N without cohesion).
+#[must_use]
+pub fn pressure_control(scene: &ReducedDiscs, reduced_pressure: f64, mass: f64) -> CellControl {
+    // At P = 0 without cohesion there is no time scale; it does not occur.
+    let scales = Scales::of(scene, reduced_pressure);
+    CellControl::Pressure { pressure: scales.pressure, mass, cap: scene.ia / scales.time }
+}

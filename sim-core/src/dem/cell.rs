@@ -1,0 +1,220 @@
+//! Discs in a periodic cell as their driver sees them.
+
+use super::Dynamics;
+use super::engine::Dem;
+use super::lists::point;
+use super::probe::MOST_SLOTS;
+use crate::boundary::{CellControl, PeriodicCell};
+use crate::contact::ContactLaw;
+use crate::lane::GROUP;
+use crate::observables::disc_contacts::DiscContact;
+use crate::space::{Planar, Space};
+use crate::state::{Force, Grains};
+
+/// A particle system in a periodic cell.
+pub trait CellDynamics: Dynamics {
+    /// Edges, strain rates and control of this instant.
+    fn cell(&self) -> &PeriodicCell;
+
+    /// Changes what moves the edges; a fixed cell loses its strain rates.
+    fn set_control(&mut self, control: CellControl);
+
+    /// Changes the local damping of discs and cell [1].
+    fn set_local_damping(&mut self, coefficient: f64);
+
+    /// Forces that do not balance and motion that has not died down, on undamped forces.
+    fn residuals(&self) -> CellResiduals;
+
+    /// The consistent picture of this instant.
+    fn picture(&self) -> CellPicture;
+}
+
+/// What is left of motion and imbalance, in units of k_n, d, m.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CellResiduals {
+    /// Net force on every disc, original numbering [k_n d].
+    pub forces: Vec<f64>,
+    /// Net moment on every disc [k_n d²].
+    pub moments: Vec<f64>,
+    /// Kinetic energy of every disc, velocities relative to the cell [k_n d²].
+    pub kinetic: Vec<f64>,
+    /// Stresses σ_1, σ_2, compression positive [k_n/d].
+    pub stress: [f64; 2],
+    /// Contacts at their Coulomb bound.
+    pub sliding: usize,
+    /// Interacting pairs (i, j, F_N without its viscous part), i < j, unsorted.
+    pub pairs: Vec<(u32, u32, f64)>,
+}
+
+/// Discs and contacts at one instant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CellPicture {
+    /// Edges [d].
+    pub edges: [f64; 2],
+    /// Centres inside the cell [d].
+    pub positions: Vec<[f64; 2]>,
+    /// Radii [d].
+    pub radii: Vec<f64>,
+    /// Velocities relative to the cell at t_n − dt/2 [d/τ].
+    pub velocities: Vec<[f64; 2]>,
+    /// Spins at t_n − dt/2 [1/τ].
+    pub spins: Vec<f64>,
+    /// Interactions, sorted by (i, j).
+    pub contacts: Vec<DiscContact>,
+    /// Stresses from static forces (without dashpots), compression positive [k_n/d].
+    pub stress: [f64; 2],
+    /// Elastic energy of normal, tangential springs and rolling springs, and potential of the attraction [k_n d²].
+    pub potential: [f64; 4],
+}
+
+impl<G: Grains, C: ContactLaw<Planar>> CellDynamics for Dem<Planar, G, PeriodicCell, C> {
+    fn cell(&self) -> &PeriodicCell {
+        &self.boundary
+    }
+
+    fn set_control(&mut self, control: CellControl) {
+        if control == CellControl::Fixed {
+            self.boundary.rate = [0.0; 2];
+        }
+        self.boundary.control = control;
+    }
+
+    fn set_local_damping(&mut self, coefficient: f64) {
+        self.boundary.local_damping = coefficient;
+    }
+
+    fn residuals(&self) -> CellResiduals {
+        let mut forces = vec![Force::default(); self.len()];
+        let mut virial = [0.0; 2];
+        let mut sliding = 0;
+        let mut pairs = Vec::new();
+        self.each_contact(|a, b, contact| {
+            let force = Planar::vector_record(contact.force);
+            let separation = Planar::vector_record(contact.separation);
+            let torques = [Planar::spin_record(contact.torque_a), Planar::spin_record(contact.torque_b)];
+            for axis in 0..2 {
+                forces[a as usize].force[axis] += force[axis];
+                forces[b as usize].force[axis] -= force[axis];
+                virial[axis] -= force[axis] * separation[axis];
+            }
+            forces[a as usize].torque[2] += torques[0][2];
+            forces[b as usize].torque[2] += torques[1][2];
+            let response = &contact.response;
+            if contact.overlap > 0.0 || response.attraction > 0.0 {
+                let (i, j) = (self.original[a as usize], self.original[b as usize]);
+                pairs.push((i.min(j), i.max(j), response.elastic - response.attraction));
+                let bound = self.law.bound(response.elastic);
+                let tangential = Planar::vector_record(response.tangential);
+                let shear = tangential[0].hypot(tangential[1]);
+                sliding += usize::from(shear > 0.0 && shear >= bound * (1.0 - 1e-9));
+            }
+        });
+        let count = self.len();
+        let mut residuals = CellResiduals {
+            forces: vec![0.0; count],
+            moments: vec![0.0; count],
+            kinetic: vec![0.0; count],
+            stress: self.boundary.stress(virial),
+            sliding,
+            pairs,
+        };
+        for (slot, (body, force)) in self.bodies.iter().zip(&forces).enumerate() {
+            let disc = self.original[slot] as usize;
+            let (v, w) = (&body.velocity, body.spin[2]);
+            residuals.forces[disc] = force.force[0].hypot(force.force[1]);
+            residuals.moments[disc] = force.torque[2].abs();
+            residuals.kinetic[disc] = 0.5
+                * (self.grains.mass(slot) * (v[0] * v[0] + v[1] * v[1]) + self.grains.inertia(slot) * w * w);
+        }
+        residuals
+    }
+
+    fn picture(&self) -> CellPicture {
+        let count = self.len();
+        let mut picture = CellPicture {
+            edges: self.boundary.edges,
+            positions: vec![[0.0; 2]; count],
+            radii: vec![0.0; count],
+            velocities: vec![[0.0; 2]; count],
+            spins: vec![0.0; count],
+            contacts: Vec::new(),
+            stress: [0.0; 2],
+            potential: [0.0; 4],
+        };
+        for (slot, body) in self.bodies.iter().enumerate() {
+            let disc = self.original[slot] as usize;
+            let inside = crate::boundary::Boundary::<Planar>::inside(&self.boundary, point(body));
+            picture.positions[disc] = [inside[0], inside[1]];
+            picture.radii[disc] = self.grains.radius(slot);
+            picture.velocities[disc] = [body.velocity[0], body.velocity[1]];
+            picture.spins[disc] = body.spin[2];
+        }
+        self.each_contact(|a, b, contact| {
+            let response = &contact.response;
+            if contact.overlap <= 0.0 && response.attraction <= 0.0 {
+                return;
+            }
+            let (i, j) = (self.original[a as usize], self.original[b as usize]);
+            let separation = Planar::vector_record(contact.separation);
+            let normal = Planar::vector_record(contact.normal);
+            let tangential = Planar::vector_record(response.tangential);
+            let sign = if i < j { 1.0 } else { -1.0 };
+            picture.contacts.push(DiscContact {
+                i: i.min(j),
+                j: i.max(j),
+                gap: -contact.overlap,
+                branch: [sign * separation[0], sign * separation[1]],
+                normal: response.elastic - response.attraction,
+                // Along t = (−n_y, n_x): reversing n and the force leaves it as it is.
+                tangential: tangential[1] * normal[0] - tangential[0] * normal[1],
+                rolling: sign * Planar::spin_record(response.rolling)[2],
+            });
+        });
+        picture.contacts.sort_unstable_by_key(|contact| (contact.i, contact.j));
+        let stiffness = self.law.stiffness();
+        let spring =
+            |force: f64, stiffness: f64| if stiffness > 0.0 { 0.5 * force * force / stiffness } else { 0.0 };
+        for contact in &picture.contacts {
+            let length = contact.branch[0].hypot(contact.branch[1]);
+            let n = [contact.branch[0] / length, contact.branch[1] / length];
+            // Force on j is F_N n − F_T t, where F_T t acts on i.
+            let on_j = [
+                contact.normal * n[0] + contact.tangential * n[1],
+                contact.normal * n[1] - contact.tangential * n[0],
+            ];
+            for axis in 0..2 {
+                picture.stress[axis] += on_j[axis] * contact.branch[axis];
+            }
+            let (elastic, attraction) = self.law.potential(-contact.gap);
+            picture.potential[0] += elastic;
+            picture.potential[1] += spring(contact.tangential, stiffness.tangential);
+            picture.potential[2] += spring(contact.rolling, stiffness.rolling);
+            picture.potential[3] += attraction;
+        }
+        picture.stress = self.boundary.stress(picture.stress);
+        picture
+    }
+}
+
+impl<G: Grains, C: ContactLaw<Planar>> Dem<Planar, G, PeriodicCell, C> {
+    /// Evaluates every listed contact once on a copy of its memory.
+    fn each_contact(&self, mut visit: impl FnMut(u32, u32, &super::kernel::Evaluated<Planar, f64>)) {
+        let pass = self.pass(std::ptr::null_mut());
+        let mut memory = [0.0; MOST_SLOTS * GROUP];
+        assert!(C::SLOTS <= MOST_SLOTS, "a law remembers at most {MOST_SLOTS} numbers");
+        for chunk in &self.chunks {
+            for list in [&chunk.inner, &chunk.outer] {
+                for k in 0..list.count {
+                    let (a, b) = list.pair(k);
+                    for slot in 0..C::SLOTS {
+                        memory[slot * GROUP] = list.slot(k, slot);
+                    }
+                    // SAFETY: the list holds valid slots, the copy of the memory has room for one lane.
+                    let contact =
+                        unsafe { pass.pair::<f64>(&raw const a, &raw const b, memory.as_mut_ptr()) };
+                    visit(a, b, &contact);
+                }
+            }
+        }
+    }
+}

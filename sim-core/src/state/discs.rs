@@ -1,0 +1,95 @@
+//! Discs of different sizes.
+
+use super::Grains;
+use crate::lane::Lane;
+
+/// Discs with m = d² (unit mass at d = 1) and moment of inertia m d²/8, by slot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Discs {
+    radius: Vec<f64>,
+    inverse_mass: Vec<f64>,
+    inverse_inertia: Vec<f64>,
+}
+
+impl Discs {
+    /// Discs of these radii, in the order of the slots [d].
+    #[must_use]
+    pub fn new(radius: Vec<f64>) -> Self {
+        let inverse_mass = radius.iter().map(|r| 1.0 / (4.0 * r * r)).collect();
+        let inverse_inertia = radius.iter().map(|r| 1.0 / (2.0 * r * r * r * r)).collect();
+        Self { radius, inverse_mass, inverse_inertia }
+    }
+}
+
+impl Grains for Discs {
+    const EQUAL: bool = false;
+
+    #[inline(always)]
+    unsafe fn radii<L: Lane>(&self, at: *const u32) -> L {
+        // SAFETY: the caller vouches for the indices.
+        unsafe { L::gather(self.radius.as_ptr(), at) }
+    }
+    /// √(m_a m_b/(m_a + m_b)) = 2 R_a R_b/√(R_a² + R_b²).
+    #[inline(always)]
+    unsafe fn root_pair_mass<L: Lane>(&self, a: *const u32, b: *const u32) -> L {
+        // SAFETY: as above.
+        let (r, s) = unsafe { (self.radii::<L>(a), self.radii::<L>(b)) };
+        let product = r.mul(s);
+        product.add(product).div(r.mul_add(r, s.mul(s)).sqrt())
+    }
+    #[inline(always)]
+    unsafe fn root_wall_mass<L: Lane>(&self, a: *const u32) -> L {
+        // SAFETY: as above.
+        let r = unsafe { self.radii::<L>(a) };
+        r.add(r)
+    }
+    #[inline(always)]
+    fn radius(&self, at: usize) -> f64 {
+        self.radius[at]
+    }
+    #[inline(always)]
+    fn mass(&self, at: usize) -> f64 {
+        4.0 * self.radius[at] * self.radius[at]
+    }
+    #[inline(always)]
+    fn inertia(&self, at: usize) -> f64 {
+        let r = self.radius[at];
+        2.0 * r * r * r * r
+    }
+    #[inline(always)]
+    fn inverse_mass(&self, at: usize) -> f64 {
+        self.inverse_mass[at]
+    }
+    #[inline(always)]
+    fn inverse_inertia(&self, at: usize) -> f64 {
+        self.inverse_inertia[at]
+    }
+    fn largest_radius(&self) -> f64 {
+        self.radius.iter().copied().fold(0.0, f64::max)
+    }
+    fn permute(&mut self, order: &[u32]) {
+        let by = |values: &[f64]| order.iter().map(|&old| values[old as usize]).collect();
+        self.radius = by(&self.radius);
+        self.inverse_mass = by(&self.inverse_mass);
+        self.inverse_inertia = by(&self.inverse_inertia);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn masses_follow_the_area() {
+        let mut discs = Discs::new(vec![0.5, 0.25, 0.4]);
+        assert_eq!((discs.mass(0), discs.mass(1)), (1.0, 0.25));
+        assert_eq!(discs.inertia(0), 1.0 / 8.0);
+        let pair = [0_u32, 1];
+        // SAFETY: both indices are valid.
+        let root = unsafe { discs.root_pair_mass::<f64>(&raw const pair[0], &raw const pair[1]) };
+        assert!((root * root - 0.25 / 1.25).abs() < 1e-16);
+        discs.permute(&[2, 0, 1]);
+        assert_eq!([discs.radius(0), discs.radius(1), discs.radius(2)], [0.4, 0.5, 0.25]);
+        assert!((discs.inverse_mass(2) - 4.0).abs() < 1e-15);
+    }
+}
