@@ -1,45 +1,56 @@
-//! Expected steps of `cohesive_spheres`.
+//! Expected steps of `cohesive_spheres`: one formula for scheduling, dry runs, progress and step limits.
 
 use super::{Approach, ReducedSpheres, Stop};
 use crate::Cost;
 
 /// Wall time of one particle-step on one core [ns].
-const NANOSECONDS: f64 = 40.0;
+const NANOSECONDS: f64 = 35.0;
 
 /// Packing and observables of one sphere [s].
 const OVERHEAD_PER_SPHERE: f64 = 2e-6;
 
+/// Time step assumed before the contact network is known [τ]; the bound for a sphere with many contacts.
+const STEP: f64 = 0.078;
+
 impl ReducedSpheres {
-    /// Expected steps until the stop criterion holds.
-    ///
-    /// Fits to the measured courses of N = 2207 at η* ≈ 1 (e within 1e-3 of its final value after 2 900, 14 300,
-    /// 70 700 steps of 0.1 τ at p/σe = 1e-4, 1e-5, 1e-6; KE/E_el = 1e-4 crossed after 3 300 … 226 000 at 1e-2 … 1e-5
-    /// and 2e-7 after 6.5 times as many): time to settle 290 τ (1e-4 σe/p)^0.694, time to equilibrium
-    /// 2 150 τ (1e-2 σe/p)^0.612. Both hold within a factor of two or three; the number of spheres hardly matters.
+    /// Time until e is within 1e-3 of its final value [τ]: 0.452 (σe/p)^0.7, a fit to measured runs at N = 2207
+    /// (285, 1430, 7070, 30 000 τ at p/σe = 1e-4, 1e-5, 1e-6, 1e-7); the number of spheres hardly matters.
     #[must_use]
-    pub fn expected_steps(&self) -> u64 {
-        let settling = 290.0 * libm::pow(1e-4 / self.pressure, 0.694);
-        let equilibrium = 2150.0 * libm::pow(1e-2 / self.pressure, 0.612);
-        let time = match (self.stop, self.approach) {
-            (Stop::Settled { .. }, _) => settling,
-            (Stop::Evidence { .. }, Approach::RollingKicks) => settling + 0.2 * equilibrium,
-            (Stop::Evidence { .. } | Stop::KineticEnergy { .. }, _) => settling + equilibrium,
-            (Stop::Steps, _) => f64::INFINITY,
-        };
-        /// Without other word, runs take steps of 0.1 τ.
-        const STEP: f64 = 0.1;
-        /// Limit of a run that only a step limit ends and that has none.
-        const LONGEST: f64 = 1e8;
-        let limit = self.max_steps.unwrap_or(u64::MAX);
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1 and 1e8")]
-        let steps = (time / self.dt.unwrap_or(STEP)).clamp(1.0, LONGEST) as u64;
-        if self.stop == Stop::Steps && self.max_steps.is_some() { limit } else { steps.min(limit) }
+    pub fn settling_time(&self) -> f64 {
+        0.452 * libm::pow(1.0 / self.pressure, 0.7)
     }
 
-    pub(crate) fn cost(&self) -> Cost {
+    /// Multiples of the settling time that the stop rule takes: typical, and the limit at which a run ends with
+    /// status `e_converged` or `step_limit`.
+    fn settling_times(&self) -> (f64, f64) {
+        match (self.approach, self.stop) {
+            (Approach::RollingKicks, _) => (4.5, 20.0),
+            (Approach::Natural, Stop::Settled { .. }) => (2.0, 20.0),
+            (Approach::Natural, Stop::Evidence { .. }) => (10.0, 20.0),
+            (Approach::Natural, Stop::KineticEnergy { .. }) => (40.0, 60.0),
+            (Approach::Natural, Stop::Steps) => (20.0, 20.0),
+        }
+    }
+
+    /// Expected steps and step limit of a run with time step `dt` [τ]. The limit can end a run, so a change of it raises
+    /// the physics version.
+    #[must_use]
+    pub fn steps(&self, dt: f64) -> (u64, u64) {
+        let unit = self.settling_time() / dt;
+        let (typical, limit) = self.settling_times();
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 1e3 and 1e12")]
+        let whole = |steps: f64| steps.ceil().clamp(1e3, 1e12) as u64;
+        let most = self.max_steps.unwrap_or_else(|| whole(unit * limit));
+        (whole(unit * typical).min(most), most)
+    }
+
+    /// The estimated work of a run.
+    #[must_use]
+    pub fn cost(&self) -> Cost {
+        let (steps, _) = self.steps(self.dt.unwrap_or(STEP));
         #[expect(clippy::cast_precision_loss, reason = "an estimate")]
         let overhead = self.n as f64 * OVERHEAD_PER_SPHERE;
-        Cost::of(self.expected_steps(), self.n, NANOSECONDS, overhead)
+        Cost::of(steps, self.n, NANOSECONDS, overhead)
     }
 }
 
@@ -51,27 +62,28 @@ mod tests {
     fn spheres(p: f64) -> ReducedSpheres {
         let scene = serde_json::json!({"model": "cohesive_spheres", "p": p, "sigma_c": 1e6, "sigma_e": 1e10});
         let crate::Reduced::CohesiveSpheres(reduced) = Scene::from_json(&scene).unwrap().reduce() else {
-            panic!("spheres");
+            panic!("spheres")
         };
         reduced
     }
 
     #[test]
     fn the_measured_settling_times_come_out() {
-        for (p, measured) in [(1e6, 2_900.0), (1e5, 14_300.0), (1e4, 70_700.0)] {
-            let settled =
-                ReducedSpheres { stop: Stop::Settled { e_drift: 1e-3, wall_imbalance: 0.01 }, ..spheres(p) };
-            let ratio = settled.expected_steps() as f64 / measured;
+        for (p, measured) in [(1e6, 290.0), (1e5, 1_430.0), (1e4, 7_070.0)] {
+            let ratio = spheres(p).settling_time() / measured;
             assert!((0.9..1.1).contains(&ratio), "{p}: {ratio}");
         }
     }
 
     #[test]
     fn a_step_limit_limits() {
-        let limited = ReducedSpheres { max_steps: Some(1000), ..spheres(1e5) };
-        assert_eq!(limited.expected_steps(), 1000);
-        let only_steps = ReducedSpheres { stop: Stop::Steps, max_steps: Some(1_000_000_000), ..spheres(1e5) };
-        assert_eq!(only_steps.expected_steps(), 1_000_000_000);
-        assert_eq!(ReducedSpheres { stop: Stop::Steps, ..spheres(1e5) }.expected_steps(), 100_000_000);
+        let limited = ReducedSpheres { max_steps: Some(700), ..spheres(1e5) };
+        assert_eq!(limited.steps(0.1), (700, 700));
+        let settled =
+            ReducedSpheres { stop: Stop::Settled { e_drift: 1e-3, wall_imbalance: 0.01 }, ..spheres(1e5) };
+        assert!(settled.cost().steps < spheres(1e5).cost().steps);
+        assert!(
+            ReducedSpheres { dt: Some(0.01), ..spheres(1e5) }.cost().seconds > spheres(1e5).cost().seconds
+        );
     }
 }
