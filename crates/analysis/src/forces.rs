@@ -5,5 +5,5 @@ pub mod distribution;
 pub mod truncated;
 
 pub use curve::{ForcePoint, Forces, forces};
-pub use distribution::{ForceDistribution, distribution};
+pub use distribution::{ForceDistribution, distribution, from_contacts};
 pub use truncated::{Truncated, truncated_exponential};

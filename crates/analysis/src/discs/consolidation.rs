@@ -6,7 +6,7 @@
 //!
 //! A free fit of (9) is degenerate (Φ0 runs away along λ), so it is made in stages on curves averaged over samples:
 //! λ and Φ0 from the straight part, Φmax and α from the tail, then joined: α and P*1 of (9) on everything above
-//! regime I with λ and Φ0 held, the curvature this implies taken out of the straight part, and so on until nothing moves.
+//! regime I with λ and Φ0 held, and these from the straight part freed from the bend that α and P*1 imply ([`Method`]).
 
 mod fit;
 mod model;
@@ -17,7 +17,7 @@ use super::DiscState;
 use super::series::{CurvePoint, Series, average, split};
 use crate::{Determined, Estimate, FitError};
 
-pub use fit::{ConsolidationFit, ErrorSource, RelationCheck};
+pub use fit::{ConsolidationFit, ErrorSource, Method, RelationCheck};
 pub use model::{PaperFit, inverse_phi};
 
 /// How the stages are chosen.

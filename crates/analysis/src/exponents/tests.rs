@@ -58,3 +58,39 @@ fn the_exponent_of_damping_is_found_where_damping_varies() {
     assert_eq!(result.q_by_regime.len(), 2);
     assert_eq!(result.scans.len(), 2);
 }
+
+/// q and c within their bootstrap intervals in at least 180 of 200 seeded studies.
+#[test]
+fn q_and_c_are_recovered_within_their_intervals() {
+    let options = ExponentOptions { resamples: 60, ..ExponentOptions::default() };
+    let trials = |as_wall_mass: bool| {
+        (0..200)
+            .filter(|&seed| {
+                let study = Study {
+                    q: 0.25,
+                    alpha_n: vec![0.05, 0.25, 0.9],
+                    p: vec![1e5],
+                    sigma_e: vec![1e10],
+                    sigma_c: log_range(2e4, 2e8, 14),
+                    ..study(seed)
+                };
+                let mut runs = study.runs();
+                if as_wall_mass {
+                    for run in &mut runs {
+                        (run.mw, run.alpha_n) = (96.0 * run.alpha_n / 0.25, 0.25);
+                    }
+                }
+                let found = collapse(&runs, &CollapseOptions::default()).unwrap();
+                let result = exponents(&found, &options).unwrap();
+                let estimate = if as_wall_mass { &result.c } else { &result.q };
+                assert!(result.b.reason().is_some());
+                estimate.value().unwrap().covers(0.25)
+            })
+            .count()
+    };
+    let (q, c) = std::thread::scope(|scope| {
+        let other = scope.spawn(|| trials(true));
+        (trials(false), other.join().unwrap())
+    });
+    assert!(q >= 180 && c >= 180, "q {q}, c {c} of 200");
+}

@@ -1,10 +1,11 @@
 //! The force distribution of one packing.
 
+use record::Table;
 use serde::{Deserialize, Serialize};
 
 use super::truncated::{Truncated, truncated_exponential};
-use crate::Determined;
 use crate::point::count;
+use crate::{Determined, FitError};
 
 /// One bin of the histogram.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -63,6 +64,21 @@ pub fn distribution(ratios: &[f64], zero_tolerance: f64) -> ForceDistribution {
     }
 }
 
+/// Distribution from a contact table with the column `fn` in units of k_n d; `adhesion` is f_c in the same units,
+/// σc/σe. Contacts below 1e-6 f_c count as without force.
+///
+/// # Errors
+/// [`FitError`] when the column is absent or there is no adhesion to scale with.
+pub fn from_contacts(contacts: &Table, adhesion: f64) -> Result<ForceDistribution, FitError> {
+    const WHAT: &str = "force distribution";
+    if adhesion <= 0.0 {
+        return Err(FitError::out_of_range(WHAT, format!("adhesion {adhesion}: fn/fc needs a positive one")));
+    }
+    let forces = contacts.column("fn").ok_or_else(|| FitError::too_few(WHAT, "columns named fn", 1, 0))?;
+    let ratios: Vec<f64> = forces.iter().map(|force| force / adhesion).collect();
+    Ok(distribution(&ratios, 1e-6))
+}
+
 /// Bins of 0.1 from −1 (no force is below −fc) to the largest of 3 and the 99 % quantile.
 fn histogram(ratios: &[f64]) -> Vec<Bin> {
     const WIDTH: f64 = 0.1;
@@ -105,5 +121,15 @@ mod tests {
         assert!(total > 0.9 && total <= 1.0 + 1e-12, "{total}");
         let none = distribution(&[], 1e-6);
         assert!(none.beta_plus.reason().is_some() && none.bins.is_empty());
+    }
+
+    #[test]
+    fn reads_a_contact_table() {
+        let mut contacts = Table::new();
+        let forces: Vec<f64> = (1..=100).map(|i| -1e-4 * (1.0 - f64::from(i) / 101.0).ln()).collect();
+        contacts.push("fn", "kn d", &forces).unwrap();
+        let found = from_contacts(&contacts, 1e-4).unwrap();
+        assert!(found.beta_plus.value().unwrap().beta.covers(1.0));
+        assert!(from_contacts(&contacts, 0.0).is_err() && from_contacts(&Table::new(), 1e-4).is_err());
     }
 }

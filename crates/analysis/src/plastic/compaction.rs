@@ -51,7 +51,10 @@ pub struct ModelSample {
     pub paper: f64,
     /// σ with the fitted constants [Pa].
     pub fitted: Option<f64>,
-    /// σ − σ_c by (5) with the fitted or the paper's constants [Pa]; elastic discs only.
+    /// ε − ε_c [1].
+    pub excess_strain: Option<f64>,
+    /// σ − σ_c from the strain, with the fitted or else the paper's constants [Pa]: (5); for plastic discs (10) of (5)
+    /// and (12).
     pub by_strain: Option<f64>,
 }
 

@@ -113,6 +113,13 @@ impl Constants {
         self.p_wave(material, phi, [self.f_e, self.f_g]) * excess_strain
     }
 
+    /// Plastic stress from the strain (12): σ_y + M_p (ε − ε_c) [Pa]; nothing for elastic discs.
+    #[must_use]
+    pub fn excess_stress_plastic(&self, material: &Material, phi: f64, excess_strain: f64) -> Option<f64> {
+        let plastic = material.plastic()?;
+        Some(material.sigma_y + self.p_wave(&plastic, phi, [self.f_ep, self.f_gp]) * excess_strain)
+    }
+
     /// Elastic stress (6): M_eff/(1 + M_eff/(c1 K Z Φ)) (ln Φ + c2), 0 below jamming [Pa].
     #[must_use]
     pub fn sigma_elastic(&self, material: &Material, phi: f64, z: f64) -> f64 {
@@ -217,6 +224,11 @@ mod tests {
         assert!((material(Some(1.0)).plastic().unwrap().young - 0.9091).abs() < 1e-4);
         assert!((material(Some(3.0)).plastic().unwrap().young - 2.3077).abs() < 1e-4);
         assert!((Constants::PAPER.excess_stress(&elastic, 1.0, 0.01) - 0.379_31).abs() < 1e-5);
+        // (12) at Φ = 1: E_p/E of the elastic modulus, above σ_y; only σ_y for H = 0
+        let hard = Constants::PAPER.excess_stress_plastic(&material(Some(1.0)), 1.0, 0.01).unwrap();
+        assert!((hard - 0.4 - 0.379_31 / 11.0).abs() < 1e-5);
+        assert_eq!(Constants::PAPER.excess_stress_plastic(&material(Some(0.0)), 0.9, 0.01), Some(0.4));
+        assert_eq!(Constants::PAPER.excess_stress_plastic(&elastic, 0.9, 0.01), None);
     }
 
     #[test]

@@ -40,6 +40,9 @@ pub fn compaction_svg(compaction: &Compaction) -> String {
             };
         by_phi.push(line(Dash::Solid, &|sample| sample.fitted));
         by_phi.push(line(Dash::Dashed, &|sample| Some(sample.paper)));
+        let strain_line =
+            curve.model.iter().filter_map(|sample| Some((sample.excess_strain?, sample.by_strain? / 1e6)));
+        by_strain.push(Layer::Line { color, dash: Dash::Solid, points: strain_line.collect() });
         row.push((Sample::Point(color, marker, Fill::Open), curve.name.clone()));
     }
     let stress = |label: &str| Axis::around(label, Scale::Linear, stresses.iter().copied());

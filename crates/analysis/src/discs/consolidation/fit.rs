@@ -1,5 +1,6 @@
 //! The staged fit and its errors.
 
+use nalgebra::{Matrix4, Vector4};
 use serde::{Deserialize, Serialize};
 
 use super::ConsolidationOptions;
@@ -22,6 +23,18 @@ pub enum ErrorSource {
     /// Scatter of the points about the curve, taken as independent: a lower bound, for a sample that is too loose at
     /// one pressure is so at the next.
     Points,
+}
+
+/// How the stages were joined.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Method {
+    /// The straight part is freed from the bend that α and P*1 imply, and all four agree.
+    SelfConsistent,
+    /// λ and Φ0 are those of the straight part as it is, Φmax and α those of the tail, P*1 follows: where the stages
+    /// cannot be made to agree (jumpy curves of few samples). λ is then low by the bend of the straight part.
+    Staged,
 }
 
 /// Which form of ln(P*1/P*0) = (1/Φ0 − 1/Φmax)/λ the data support.
@@ -58,6 +71,8 @@ pub struct ConsolidationFit {
     pub a: Estimate,
     /// Where the intervals come from.
     pub errors: ErrorSource,
+    /// How the stages were joined.
+    pub method: Method,
     /// Range of P* of the straight part.
     pub straight: [f64; 2],
     /// P* from which the tail was fitted.
@@ -85,6 +100,7 @@ struct Stages {
     theta: Theta,
     line: Fit,
     join: Fit,
+    method: Method,
 }
 
 pub(super) fn fit(
@@ -96,7 +112,7 @@ pub(super) fn fit(
     let windows = windows(&data, options)?;
     let stages = stages(&data, &windows, None)?;
     let (errors, spread, dof) = if seeds.len() >= 4 {
-        (ErrorSource::Samples, jackknife(states, seeds, &windows)?, count(seeds.len()) - 1.0)
+        (ErrorSource::Samples, jackknife(states, seeds, &windows, &stages)?, count(seeds.len()) - 1.0)
     } else {
         let dof = count(stages.join.points) - 4.0;
         (ErrorSource::Points, by_points(&data, &windows, &stages), dof.max(1.0))
@@ -119,6 +135,7 @@ pub(super) fn fit(
         p_star_1: estimate(&|t| t[3]).exp(),
         a: estimate(&|t| (t[0] / (2.0 * t[2])).ln() + t[2] * t[3]).exp(),
         errors,
+        method: stages.method,
         straight: windows.straight,
         tail_from: windows.tail,
         line: stages.line,
@@ -169,67 +186,176 @@ fn windows(data: &[Datum], options: &ConsolidationOptions) -> Result<Windows, Fi
     Ok(Windows { straight, tail, p_star_0: options.p_star_0.unwrap_or(straight[0]) })
 }
 
-/// The stages, repeated until they agree; `start` saves rounds when the answer is nearly known.
-fn stages(data: &[Datum], windows: &Windows, start: Option<Theta>) -> Result<Stages, FitError> {
+/// λ and Φ0 from the straight part, Φmax and α from the tail, then joined so that they agree; `start` and `method` repeat
+/// an earlier answer on slightly different data.
+fn stages(data: &[Datum], windows: &Windows, earlier: Option<(Theta, Method)>) -> Result<Stages, FitError> {
     let [low, high] = windows.straight;
-    let inside = |d: &&Datum| d.x >= low * 0.999 && d.x <= high * 1.001;
-    let straight: Vec<Datum> = data.iter().filter(inside).copied().collect();
-    let above: Vec<Datum> = data.iter().copied().filter(|d| d.x >= low * 0.999).collect();
-    let tail: Vec<Datum> = data.iter().copied().filter(|d| d.x >= windows.tail * 0.999).collect();
-    if straight.len() < 4 {
-        return Err(FitError::too_few(WHAT, "pressures on the straight part", 4, straight.len()));
+    let parts = Parts {
+        straight: data.iter().filter(|d| d.x >= low * 0.999 && d.x <= high * 1.001).copied().collect(),
+        above: data.iter().copied().filter(|d| d.x >= low * 0.999).collect(),
+        tail: data.iter().copied().filter(|d| d.x >= windows.tail * 0.999).collect(),
+        p_star_0: windows.p_star_0,
+    };
+    if parts.straight.len() < 4 {
+        return Err(FitError::too_few(WHAT, "pressures on the straight part", 4, parts.straight.len()));
     }
-    if tail.len() < 4 {
-        return Err(FitError::too_few(WHAT, "pressures on the tail", 4, tail.len()));
+    if parts.tail.len() < 4 {
+        return Err(FitError::too_few(WHAT, "pressures on the tail", 4, parts.tail.len()));
     }
-    let p_star_0 = windows.p_star_0;
-    let mut theta: Theta = start.unwrap_or([0.0, 0.0, 1.0, f64::INFINITY]);
-    for _ in 0..60 {
-        let bent = |d: &Datum| {
-            if theta[3].is_finite() { theta[0] * bend(d.x, theta[2], theta[3].exp()) } else { 0.0 }
+    let plain = parts.line(None)?;
+    if plain.values()[1] <= 0.0 {
+        let reason = format!("λ = {:.3}: the curve does not consolidate", plain.values()[1]);
+        return Err(FitError::underdetermined(WHAT, reason));
+    }
+    if earlier.is_none_or(|(_, method)| method == Method::SelfConsistent) {
+        let start = match earlier {
+            Some((theta, _)) => Some(theta),
+            None => parts
+                .join(plain.values()[1], plain.values()[0])
+                .ok()
+                .map(|join| [plain.values()[1], plain.values()[0], join.values()[0], join.values()[1]]),
         };
-        let freed: Vec<Datum> = straight
+        let found = start.and_then(|start| parts.agree(start));
+        if let Some(theta) = found.filter(|theta| parts.credible(theta, plain.values()[1])) {
+            let line = parts.line(Some(&theta))?;
+            let join = parts.join(theta[0], theta[1])?;
+            return Ok(Stages { theta, line, join, method: Method::SelfConsistent });
+        }
+    }
+    let (lambda, inverse_phi_0) = (plain.values()[1], plain.values()[0]);
+    let join = parts.join(lambda, inverse_phi_0)?;
+    let guess: Theta = [lambda, inverse_phi_0, join.values()[0], join.values()[1]];
+    let tail = tail_fit(&parts.tail, &guess)?;
+    let (inverse_phi_max, alpha) = (tail.values()[0], tail.values()[2]);
+    let theta =
+        [lambda, inverse_phi_0, alpha, (inverse_phi_0 - inverse_phi_max) / lambda + parts.p_star_0.ln()];
+    Ok(Stages { theta, line: plain, join, method: Method::Staged })
+}
+
+struct Parts {
+    straight: Vec<Datum>,
+    above: Vec<Datum>,
+    tail: Vec<Datum>,
+    p_star_0: f64,
+}
+
+impl Parts {
+    /// (7) on the straight part, freed from the bend that θ implies.
+    fn line(&self, theta: Option<&Theta>) -> Result<Fit, FitError> {
+        let bent = |d: &Datum| theta.map_or(0.0, |t| t[0] * bend(d.x, t[2], t[3].exp()));
+        let freed: Vec<Datum> = self
+            .straight
             .iter()
-            .map(|d| Datum { x: (d.x / p_star_0).ln(), y: d.y - bent(d), sigma: d.sigma })
+            .map(|d| Datum { x: (d.x / self.p_star_0).ln(), y: d.y - bent(d), sigma: d.sigma })
             .collect();
         let start = [freed[0].y, 0.2];
-        let line =
-            least_squares(WHAT, &freed, &["inverse_phi_0", "lambda"], &start, Sigma::Relative, |x, t| {
-                t[0] - t[1] * x
-            })?;
-        let (inverse_phi_0, lambda) = (line.values()[0], line.values()[1]);
-        if lambda <= 0.0 {
-            return Err(FitError::underdetermined(
-                WHAT,
-                format!("λ = {lambda:.3}: the curve does not consolidate"),
-            ));
-        }
-        let densest = tail.iter().map(|d| d.y).fold(f64::INFINITY, f64::min);
-        let crossing = ((inverse_phi_0 - densest) / lambda + p_star_0.ln()).exp();
-        let start = if theta[3].is_finite() { [theta[2], theta[3]] } else { [1.0, crossing.ln()] };
-        let join =
-            least_squares(WHAT, &above, &["alpha", "ln_p_star_1"], &start, Sigma::Relative, |p, t| {
-                if t[0] <= 0.0 {
-                    return f64::NAN;
-                }
-                inverse_phi(p, p_star_0, 1.0 / inverse_phi_0, lambda, t[0], t[1].exp())
-            })?;
-        let next: Theta = [lambda, inverse_phi_0, join.values()[0], join.values()[1]];
-        let moved = next.iter().zip(&theta).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        theta = next;
-        if moved < 1e-7 {
-            return Ok(Stages { theta, line, join });
-        }
+        least_squares(WHAT, &freed, &["inverse_phi_0", "lambda"], &start, Sigma::Relative, |x, t| {
+            t[0] - t[1] * x
+        })
     }
-    Err(FitError::not_converged(WHAT, "the straight part and the tail do not settle on one curve"))
+
+    /// (9) on everything above regime I with λ and Φ0 held.
+    fn join(&self, lambda: f64, inverse_phi_0: f64) -> Result<Fit, FitError> {
+        let densest = self.tail.iter().map(|d| d.y).fold(f64::INFINITY, f64::min);
+        let start = [1.0, (inverse_phi_0 - densest) / lambda + self.p_star_0.ln()];
+        let names = ["alpha", "ln_p_star_1"];
+        least_squares(WHAT, &self.above, &names, &start, Sigma::Relative, |p, t| {
+            if t[0] <= 0.0 {
+                return f64::NAN;
+            }
+            self.curve(p, &[lambda, inverse_phi_0, t[0], t[1]])
+        })
+    }
+
+    fn curve(&self, p: f64, theta: &Theta) -> f64 {
+        inverse_phi(p, self.p_star_0, 1.0 / theta[1], theta[0], theta[2], theta[3].exp())
+    }
+
+    /// Newton's method for the θ at which line and join agree: the residuals of (9) are orthogonal to ∂/∂λ and ∂/∂(1/Φ0) on
+    /// the straight part and to ∂/∂α and ∂/∂ln P*1 above regime I.
+    fn agree(&self, start: Theta) -> Option<Theta> {
+        let mut theta = start;
+        let (mut side, mut matrix) = self.balance(&theta);
+        for _ in 0..60 {
+            let step = matrix.lu().solve(&side)?;
+            let mut part = 1.0;
+            let (next, balance) = loop {
+                let trial: Theta = std::array::from_fn(|k| theta[k] + part * step[k]);
+                let balance = self.balance(&trial);
+                if trial[2] > 0.0 && balance.0.norm() < side.norm() {
+                    break (trial, balance);
+                }
+                part *= 0.5;
+                if part < 1e-6 {
+                    // no progress left: either there, or stuck
+                    return (step.amax() < 1e-6).then_some(theta);
+                }
+            };
+            theta = next;
+            (side, matrix) = balance;
+            if part * step.amax() < 1e-10 {
+                return Some(theta);
+            }
+        }
+        None
+    }
+
+    /// The four sums that have to vanish, and minus their derivatives (without second derivatives of the curve).
+    fn balance(&self, theta: &Theta) -> (Vector4<f64>, Matrix4<f64>) {
+        let (mut side, mut matrix) = (Vector4::zeros(), Matrix4::zeros());
+        let mut add = |data: &[Datum], rows: std::ops::Range<usize>| {
+            for d in data {
+                let slopes = self.slopes(d.x, theta);
+                let weight = d.sigma.powi(-2);
+                let residual = d.y - self.curve(d.x, theta);
+                for i in rows.clone() {
+                    side[i] += weight * slopes[i] * residual;
+                    for j in 0..4 {
+                        matrix[(i, j)] += weight * slopes[i] * slopes[j];
+                    }
+                }
+            }
+        };
+        add(&self.straight, 0..2);
+        add(&self.above, 2..4);
+        (side, matrix)
+    }
+
+    fn slopes(&self, p: f64, theta: &Theta) -> Theta {
+        const H: f64 = 1e-6;
+        std::array::from_fn(|k| {
+            let (mut above, mut below) = (*theta, *theta);
+            above[k] += H;
+            below[k] -= H;
+            (self.curve(p, &above) - self.curve(p, &below)) / (2.0 * H)
+        })
+    }
+
+    /// A free fit may run away along λ: the slope may exceed the plain one by what a bend explains, not more, and the
+    /// crossover has to lie within the data.
+    fn credible(&self, theta: &Theta, plain_lambda: f64) -> bool {
+        let last = self.above[self.above.len() - 1].x;
+        let p_star_1 = theta[3].exp();
+        (0.7..1.6).contains(&(theta[0] / plain_lambda))
+            && p_star_1 > self.p_star_0
+            && p_star_1 < last
+            && theta[2] < 5.0
+    }
 }
 
 /// Shifts of θ whose outer products sum to the jackknife covariance: √((n−1)/n) (θ_(i) − θ̄), about the estimate.
-fn jackknife(states: &[&DiscState], seeds: &[u64], windows: &Windows) -> Result<Vec<Theta>, FitError> {
-    let base = stages(&averaged(states, |_| true), windows, None)?.theta;
+fn jackknife(
+    states: &[&DiscState],
+    seeds: &[u64],
+    windows: &Windows,
+    found: &Stages,
+) -> Result<Vec<Theta>, FitError> {
+    let base = found.theta;
     let left_out = seeds
         .iter()
-        .map(|&out| Ok(stages(&averaged(states, |seed| seed != out), windows, Some(base))?.theta))
+        .map(|&out| {
+            Ok(stages(&averaged(states, |seed| seed != out), windows, Some((base, found.method)))?.theta)
+        })
         .collect::<Result<Vec<Theta>, FitError>>()?;
     let n = count(left_out.len());
     let mean: Theta = std::array::from_fn(|k| left_out.iter().map(|theta| theta[k]).sum::<f64>() / n);
@@ -249,7 +375,7 @@ fn by_points(data: &[Datum], windows: &Windows, stages_found: &Stages) -> Vec<Th
         .filter_map(|i| {
             let mut moved = data.to_vec();
             moved[i].y += PART * scale * moved[i].sigma;
-            let theta = stages(&moved, windows, Some(base)).ok()?.theta;
+            let theta = stages(&moved, windows, Some((base, stages_found.method))).ok()?.theta;
             Some(std::array::from_fn(|k| base[k] + (theta[k] - base[k]) / PART))
         })
         .collect()

@@ -144,3 +144,56 @@ fn series_are_kept_apart_and_unconverged_states_left_out() {
     assert_eq!(found.curves[1].phi.len(), 25);
     assert!(found.curves[1].rms_to_paper.unwrap() < 0.01);
 }
+
+/// All three rows of Table III, with noise of the size that four samples leave: the stages settle and the truth lies
+/// within three standard errors.
+#[test]
+fn every_row_of_table_iii_is_recovered() {
+    for mu_r in [0.0, 0.005, 0.5] {
+        let row = PaperFit::of(mu_r).unwrap();
+        let normal = Normal::new(0.0, 0.01).unwrap();
+        let mut rng = Pcg64::seed_from_u64(11);
+        let mut states = states(4, 1e-3, 1);
+        for state in &mut states {
+            let exact = row.inverse_phi(state.p_star).min(row.inverse_phi(row.p_star_0 * 1.1));
+            state.mu_r = mu_r;
+            state.phi = 1.0 / (exact + normal.sample(&mut rng));
+        }
+        let found = fitted(&states);
+        assert_eq!((found.method, found.errors), (Method::SelfConsistent, ErrorSource::Samples));
+        for (estimate, truth) in
+            [(found.lambda, row.lambda[0]), (found.alpha, row.alpha[0]), (found.p_star_1, row.p_star_1[0])]
+        {
+            assert!(
+                (estimate.value - truth).abs() < 3.0 * estimate.se + 1e-3,
+                "{mu_r}: {estimate:?} for {truth}"
+            );
+        }
+        assert!(found.relation.value().unwrap().with_lambda);
+    }
+}
+
+/// A single jumpy sample (measured with an independent code) has a wide interval, and no more.
+#[test]
+fn one_jumpy_sample_is_fitted_with_an_honest_interval() {
+    let text = include_str!("one_sample.csv");
+    let states: Vec<DiscState> = text
+        .lines()
+        .skip(1)
+        .map(|line| line.split_once(',').unwrap())
+        .map(|(p_star, phi)| DiscState {
+            seed: 1,
+            assembly: "type2".to_owned(),
+            mu_r: 0.005,
+            branch: "compression".to_owned(),
+            p_star: p_star.parse().unwrap(),
+            phi: phi.parse().unwrap(),
+            converged: true,
+            ..DiscState::default()
+        })
+        .collect();
+    let found = fitted(&states);
+    assert_eq!(found.errors, ErrorSource::Points);
+    assert!(found.lambda.covers(0.194) && found.lambda.se > 0.05, "{:?}", found.lambda);
+    assert!(found.phi_max.covers(0.774));
+}

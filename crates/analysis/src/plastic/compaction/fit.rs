@@ -213,9 +213,16 @@ fn model(curve: &PlasticCurve, fitted: Option<Constants>) -> Vec<ModelSample> {
             phi: state.phi,
             paper: Constants::PAPER.sigma(&curve.material, state.phi, z),
             fitted: fitted.map(|constants| blend(&constants, curve, state)),
-            by_strain: excess
-                .filter(|_| curve.material.h.is_none())
-                .map(|excess| constants.excess_stress(&curve.material, state.phi, excess)),
+            excess_strain: excess,
+            by_strain: excess.map(|excess| {
+                let elastic = constants.excess_stress(&curve.material, state.phi, excess);
+                let Some(plastic) = constants.excess_stress_plastic(&curve.material, state.phi, excess)
+                else {
+                    return elastic;
+                };
+                let share = state.f_p.unwrap_or_else(|| constants.plastic_share(state.phi));
+                (1.0 - share) * elastic + share * plastic
+            }),
         })
     };
     curve.states[onset..].iter().filter_map(sample).collect()
