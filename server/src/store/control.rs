@@ -159,7 +159,7 @@ impl Target {
     }
 }
 
-async fn shift_runnable(tx: &mut Transaction<'_, Sqlite>, sweep: i64, by: i64) -> StoreResult<()> {
+pub(super) async fn shift_runnable(tx: &mut Transaction<'_, Sqlite>, sweep: i64, by: i64) -> StoreResult<()> {
     sqlx::query(
         "update jobs set runnable = runnable + ?2 where seq in (select job from wants where sweep = ?1)",
     )

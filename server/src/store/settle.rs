@@ -4,6 +4,7 @@ use protocol::SweepId;
 use sqlx::sqlite::SqliteRow;
 use sqlx::{Row as _, Sqlite, Transaction};
 
+use super::control::shift_runnable;
 use super::{Store, StoreResult, events, read};
 use crate::clock::Moment;
 
@@ -14,16 +15,13 @@ pub(super) async fn settle_sweep(
     now: Moment,
 ) -> StoreResult<usize> {
     let over = sqlx::query(
-        "update sweeps set state = case when failed + cancelled > 0 then 'failed' else 'done' end,
-             finished_at = ?1
-         where seq = ?2 and state in ('running', 'paused') and scanned >= candidates and queued + leased = 0
-         returning id, state",
+        "select seq, state from sweeps
+         where seq = ?1 and state in ('running', 'paused') and scanned >= candidates and queued + leased = 0",
     )
-    .bind(now.0)
     .bind(sweep)
     .fetch_all(&mut **tx)
     .await?;
-    announce(tx, &over, now).await
+    close(tx, &over, now).await
 }
 
 /// Closes every sweep of a job of which nothing waits or runs any more.
@@ -33,23 +31,34 @@ pub(super) async fn settle_sweeps_of(
     now: Moment,
 ) -> StoreResult<usize> {
     let over = sqlx::query(
-        "update sweeps set state = case when failed + cancelled > 0 then 'failed' else 'done' end,
-             finished_at = ?1
-         where seq in (select sweep from wants where job = ?2)
-           and state in ('running', 'paused') and scanned >= candidates and queued + leased = 0
-         returning id, state",
+        "select seq, state from sweeps
+         where seq in (select sweep from wants where job = ?1)
+           and state in ('running', 'paused') and scanned >= candidates and queued + leased = 0",
     )
-    .bind(now.0)
     .bind(job)
     .fetch_all(&mut **tx)
     .await?;
-    announce(tx, &over, now).await
+    close(tx, &over, now).await
 }
 
-async fn announce(tx: &mut Transaction<'_, Sqlite>, over: &[SqliteRow], now: Moment) -> StoreResult<usize> {
+async fn close(tx: &mut Transaction<'_, Sqlite>, over: &[SqliteRow], now: Moment) -> StoreResult<usize> {
     for row in over {
-        let id: SweepId = read("sweeps.id", row.try_get::<String, _>("id")?.parse())?;
-        let data = serde_json::json!({ "state": row.try_get::<String, _>("state")? });
+        let sweep: i64 = row.try_get("seq")?;
+        if row.try_get::<String, _>("state")? == "paused" {
+            // The pause ends with the sweep: a later retry of its jobs runs on its behalf.
+            shift_runnable(tx, sweep, 1).await?;
+        }
+        let closed = sqlx::query(
+            "update sweeps set state = case when failed + cancelled > 0 then 'failed' else 'done' end,
+                 finished_at = ?1
+             where seq = ?2 returning id, state",
+        )
+        .bind(now.0)
+        .bind(sweep)
+        .fetch_one(&mut **tx)
+        .await?;
+        let id: SweepId = read("sweeps.id", closed.try_get::<String, _>("id")?.parse())?;
+        let data = serde_json::json!({ "state": closed.try_get::<String, _>("state")? });
         events::append(tx, now, "sweep_state", Some(id), None, &data).await?;
     }
     Ok(over.len())
