@@ -35,6 +35,9 @@ pub fn progress(work: &Work) -> f64 {
 /// longest running job needs. `None` while nothing runs or no speed is known.
 #[must_use]
 pub fn seconds_left(work: &Work) -> Option<f64> {
+    if work.total <= 0.0 {
+        return None;
+    }
     let left = (work.total - work.done - work.running_done - work.given_up).max(0.0);
     if left == 0.0 {
         return Some(0.0);

@@ -164,10 +164,12 @@ impl Store {
         .execute(&mut *tx)
         .await?;
         sqlx::query(
-            "update sweeps set expanded = expanded + s.n, scanned = ?3, reused = reused + s.done,
-                 queued = queued + s.queued, leased = leased + s.leased, done = sweeps.done + s.done,
-                 failed = failed + s.failed, cost = cost + s.cost, cost_done = cost_done + s.cost_done,
-                 cost_given_up = cost_given_up + s.cost_failed
+            "update sweeps set expanded = sweeps.expanded + s.n, scanned = ?3,
+                 reused = sweeps.reused + s.done,
+                 queued = sweeps.queued + s.queued, leased = sweeps.leased + s.leased, done = sweeps.done + s.done,
+                 failed = sweeps.failed + s.failed, cost = sweeps.cost + s.cost,
+                 cost_done = sweeps.cost_done + s.cost_done,
+                 cost_given_up = sweeps.cost_given_up + s.cost_failed
              from (select count(*) n, coalesce(sum(state = 'queued'), 0) queued,
                        coalesce(sum(state = 'leased'), 0) leased, coalesce(sum(state = 'done'), 0) done,
                        coalesce(sum(state = 'failed'), 0) failed, coalesce(total(cost), 0.0) cost,

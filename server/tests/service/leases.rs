@@ -89,7 +89,8 @@ async fn heartbeats_keep_the_lease_and_show_progress() {
     }
     let view = service.sweep(&sweep).await;
     assert_eq!(view["progress"], 0.5);
-    assert_eq!(view["eta_seconds"], 1.0);
+    // Half of the work took one second; round-off of a few operations.
+    assert!((view["eta_seconds"].as_f64().unwrap() - 1.0).abs() < 1e-9, "{view}");
     let job = service.get(&format!("/v1/jobs/{}", grant.job)).await.expect(200, "");
     assert_eq!(job["attempts"][0]["live"]["e"], 1.2);
 }
