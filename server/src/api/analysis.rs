@@ -46,7 +46,9 @@ fn filters(query: &Query) -> Answer<Filters> {
 
 /// Plateau and collapse: relative void ratio against η*
 ///
-/// e_min, plateau e_max (15) and relative void ratio e_r (17) of every finished point, with standard errors; outliers flagged. Query parameters filter the rows as for results. Answers also while the sweep runs; what the data do not
+/// e_min, plateau e_max (15) and relative void ratio e_r (17) of every finished point, with standard errors;
+/// outliers flagged. Query parameters filter the rows as for results. Answers also while the sweep runs; what
+/// the data do not
 /// determine is a problem document with the reason.
 #[utoipa::path(get, path = "/v1/sweeps/{id}/collapse", tag = "analysis", params(("id" = SweepId, Path)),
     responses((status = 200, body = Object),
@@ -73,7 +75,8 @@ pub(super) async fn collapse_svg(
 
 /// The master curve through the collapse
 ///
-/// Master curve (30)/(31) with covariance and residuals. Query parameters filter the rows as for results. Answers also while the sweep runs; what the data do not
+/// Master curve (30)/(31) with covariance and residuals. Query parameters filter the rows as for results.
+/// Answers also while the sweep runs; what the data do not
 /// determine is a problem document with the reason.
 #[utoipa::path(get, path = "/v1/sweeps/{id}/fit", tag = "analysis", params(("id" = SweepId, Path)),
     responses((status = 200, body = Object),
@@ -100,7 +103,8 @@ pub(super) async fn fit_svg(
 
 /// Exponents of the scaling found by the data
 ///
-/// Exponents b and c that collapse the data best, with bootstrap errors, beside the paper's. Query parameters filter the rows as for results. Answers also while the sweep runs; what the data do not
+/// Exponents b and c that collapse the data best, with bootstrap errors, beside the paper's. Query parameters
+/// filter the rows as for results. Answers also while the sweep runs; what the data do not
 /// determine is a problem document with the reason.
 #[utoipa::path(get, path = "/v1/sweeps/{id}/exponents", tag = "analysis", params(("id" = SweepId, Path)),
     responses((status = 200, body = Object),
@@ -127,7 +131,8 @@ pub(super) async fn exponents_svg(
 
 /// Force exponents β± against η and η*
 ///
-/// Exponents of the force distribution of every run, and which variable orders them better. Query parameters filter the rows as for results. Answers also while the sweep runs; what the data do not
+/// Exponents of the force distribution of every run, and which variable orders them better. Query parameters
+/// filter the rows as for results. Answers also while the sweep runs; what the data do not
 /// determine is a problem document with the reason.
 #[utoipa::path(get, path = "/v1/sweeps/{id}/forces", tag = "analysis", params(("id" = SweepId, Path)),
     responses((status = 200, body = Object),
@@ -154,7 +159,8 @@ pub(super) async fn forces_svg(
 
 /// Coordination Z± against η and η*
 ///
-/// Compressive and tensile coordination of every run, and which variable orders them better. Query parameters filter the rows as for results. Answers also while the sweep runs; what the data do not
+/// Compressive and tensile coordination of every run, and which variable orders them better. Query parameters
+/// filter the rows as for results. Answers also while the sweep runs; what the data do not
 /// determine is a problem document with the reason.
 #[utoipa::path(get, path = "/v1/sweeps/{id}/bonds", tag = "analysis", params(("id" = SweepId, Path)),
     responses((status = 200, body = Object),

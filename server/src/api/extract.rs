@@ -31,7 +31,9 @@ impl<S: Sync, T: DeserializeOwned> FromRequestParts<S> for Params<T> {
                 let text = text.trim_start_matches("Failed to deserialize query string: ").to_owned();
                 let value = parts.uri.query().unwrap_or_default();
                 let remedy = "GET /docs lists the parameters of every route";
-                Err(AppError::field("query", "?", format!("{value:.200}"), &text, remedy).into())
+                // serde names the parameter before the colon.
+                let (field, problem) = text.split_once(": ").unwrap_or(("query", text.as_str()));
+                Err(AppError::field("query", field, format!("{value:.200}"), problem, remedy).into())
             }
         }
     }
