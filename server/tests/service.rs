@@ -1,5 +1,7 @@
 //! The whole coordinator in process: router, use cases, store on a temporary disk; the clock is moved by hand.
 
+#![expect(clippy::unwrap_used, reason = "helpers of tests, outside of test functions")]
+
 #[path = "service/bad_input.rs"]
 mod bad_input;
 #[path = "service/description.rs"]
