@@ -47,7 +47,7 @@ enum Wake {
     Stop,
     GateMoved,
     JobEnded(JobId),
-    Claimed(Result<ClaimResponse, ClientError>),
+    Claimed { asked: Instant, answer: Result<ClaimResponse, ClientError> },
     TimePassed,
 }
 
@@ -91,26 +91,27 @@ impl Desk {
                     self.controls.remove(&job);
                     self.last_work = Instant::now();
                 }
-                Wake::Claimed(Ok(response)) => {
+                Wake::Claimed { asked, answer: Ok(response) } => {
                     if std::mem::take(&mut away) {
                         tracing::info!("the coordinator is back");
                     }
                     waits = Patience::endless(LONGEST_WAIT).waits();
                     if response.grants.is_empty() {
-                        not_before = Instant::now() + seconds(response.retry_seconds.min(60.0));
+                        // a long poll has waited already: ask again at once
+                        not_before = asked + seconds(response.retry_seconds.min(60.0));
                     }
                     for grant in response.grants {
                         self.start(grant);
                     }
                 }
-                Wake::Claimed(Err(ClientError::Retry { what, retry_after })) => {
+                Wake::Claimed { answer: Err(ClientError::Retry { what, retry_after }), .. } => {
                     if !std::mem::replace(&mut away, true) {
                         tracing::warn!(what, "the coordinator is away; asking again from time to time");
                     }
                     let wait = waits.next().unwrap_or(LONGEST_WAIT).max(retry_after.unwrap_or_default());
                     not_before = Instant::now() + wait;
                 }
-                Wake::Claimed(Err(ClientError::FixInput(problem))) => {
+                Wake::Claimed { answer: Err(ClientError::FixInput(problem)), .. } => {
                     tracing::warn!(problem = problem.title, "the claim is refused; registering again");
                     match self.register_again(stop).await {
                         Ok(true) => not_before = Instant::now() + waits.next().unwrap_or(LONGEST_WAIT),
@@ -118,7 +119,9 @@ impl Desk {
                         Err(error) => break Err(error),
                     }
                 }
-                Wake::Claimed(Err(error)) => break Err(WorkerError::Refused(error.to_string())),
+                Wake::Claimed { answer: Err(error), .. } => {
+                    break Err(WorkerError::Refused(error.to_string()));
+                }
             }
         };
         self.drain().await;
@@ -139,7 +142,8 @@ impl Desk {
         let client = &self.context.client;
         let claim = async {
             tokio::time::sleep_until(not_before.into()).await;
-            client.claim(&request).await
+            let asked = Instant::now();
+            (asked, client.claim(&request).await)
         };
         tokio::select! {
             biased;
@@ -154,7 +158,7 @@ impl Desk {
             },
             Ok(()) = gate.changed() => Wake::GateMoved,
             () = tokio::time::sleep(Duration::from_secs(1)), if self.context.config.idle_timeout_seconds.is_some() && !may_claim => Wake::TimePassed,
-            answer = claim, if may_claim => Wake::Claimed(answer),
+            (asked, answer) = claim, if may_claim => Wake::Claimed { asked, answer },
         }
     }
 

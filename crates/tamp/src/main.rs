@@ -1,3 +1,7 @@
-//! The command line of Tamp.
+//! `tamp`: see the library.
 
-fn main() {}
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    tamp::main()
+}
