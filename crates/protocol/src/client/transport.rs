@@ -106,6 +106,8 @@ impl Client {
         {
             return Err(BuildError::Token);
         }
+        // The process may have chosen a provider before: then that one stays.
+        let _ = rustls::crypto::ring::default_provider().install_default();
         let http = reqwest::Client::builder()
             .connect_timeout(Duration::from_secs(10))
             .pool_idle_timeout(Duration::from_secs(30))
