@@ -11,9 +11,12 @@ use super::contact::detect::{Outline, candidates};
 use super::contact::gauss_seidel::{self, Tolerance};
 use super::contact::rows::{Rows, tangent};
 use super::contact::{Candidate, Key, Partner, Wall};
-use super::element::{Law, internal_force_and_tangent};
+use super::element::{Law, internal_force, internal_force_and_tangent};
 use super::skyline::Skyline;
 use super::world::World;
+
+/// Residual ratio of two iterations above which old factors are given up.
+const SLOW: f64 = 0.5;
 
 /// Mass factor of an unknown held at rest: its response is below round-off.
 const RIGID: f64 = 1e30;
@@ -144,11 +147,15 @@ impl Implicit {
         }
         let cell = world.bodies.iter().map(|body| body.template.cell * body.size).fold(f64::MAX, f64::min);
         let mut worst = (f64::INFINITY, f64::INFINITY);
+        // the factors of the second iterate serve the later ones while they do their work: what is left to find then
+        // are contact normals
+        let mut fresh = true;
         for iteration in 0..=numerics.iterations {
-            self.linearise(world, dt)?;
+            self.linearise(world, dt, fresh)?;
             self.detect(world, &walls, 0.3 * cell);
             self.rows.build(&self.candidates, &world.bodies, &walls, &warm);
             let (residual, gap) = self.errors(world, dt, cell);
+            let slow = residual > SLOW * worst.0;
             worst = (residual, gap);
             if iteration > 0 && residual <= numerics.residual && gap <= numerics.gap {
                 world.effort.newton += iteration as u64;
@@ -158,7 +165,14 @@ impl Implicit {
             if iteration == numerics.iterations {
                 break;
             }
-            self.factorise(world)?;
+            if fresh {
+                self.factorise(world)?;
+            } else if slow {
+                self.linearise(world, dt, true)?;
+                self.factorise(world)?;
+            }
+            self.release(world);
+            fresh = iteration == 0;
             self.bound(world, advance);
             gauss_seidel::prepare(&mut self.rows, &self.compliance, &self.sizes, world.friction);
             for ((contact, work), body) in self.contact_velocity.iter_mut().zip(&self.work).zip(&world.bodies)
@@ -187,19 +201,13 @@ impl Implicit {
         let law = world.law;
         let all = self.work.par_iter_mut().zip(&world.bodies).enumerate();
         collect(all.map(|(body, (work, state))| {
-            super::element::internal_force(
-                state,
-                &state.displacement,
-                &law,
-                &mut work.trial,
-                &mut work.start_force,
-            )
-            .map_err(|_| Failure::Inverted { body })
+            internal_force(state, &state.displacement, &law, &mut work.trial, &mut work.start_force)
+                .map_err(|_| Failure::Inverted { body })
         }))
     }
 
-    /// Forces and matrices at the present velocities.
-    fn linearise(&mut self, world: &World, dt: f64) -> Result<(), Failure> {
+    /// Forces at the present velocities, and matrices if wanted.
+    fn linearise(&mut self, world: &World, dt: f64, tangent: bool) -> Result<(), Failure> {
         let (law, theta, gravity): (Law, _, _) = (world.law, world.numerics.theta, world.acceleration);
         let all = self.work.par_iter_mut().zip(&world.bodies).enumerate();
         collect(all.map(|(number, (work, body))| {
@@ -207,18 +215,23 @@ impl Implicit {
             for (u, ((v, v0), u0)) in work.displacement.iter_mut().zip(motion) {
                 *u = u0 + dt * (theta * v + (1.0 - theta) * v0);
             }
-            work.matrix.clear();
-            let factor = theta * theta * dt * dt;
-            internal_force_and_tangent(
-                body,
-                &work.displacement,
-                &law,
-                &mut work.trial,
-                &mut work.force,
-                factor,
-                &mut work.matrix,
-            )
-            .map_err(|_| Failure::Inverted { body: number })?;
+            let (trial, force) = (&mut work.trial, &mut work.force);
+            let done = if tangent {
+                work.matrix.clear();
+                let factor = theta * theta * dt * dt;
+                internal_force_and_tangent(
+                    body,
+                    &work.displacement,
+                    &law,
+                    trial,
+                    force,
+                    factor,
+                    &mut work.matrix,
+                )
+            } else {
+                internal_force(body, &work.displacement, &law, trial, force)
+            };
+            done.map_err(|_| Failure::Inverted { body: number })?;
             for (unknown, residual) in work.residual.iter_mut().enumerate() {
                 let mass = body.mass[unknown / 2];
                 let force = theta * work.force[unknown] + (1.0 - theta) * work.start_force[unknown];
@@ -274,7 +287,7 @@ impl Implicit {
         (relative, worst / cell)
     }
 
-    /// Factors, boundary compliances and the velocities without contact.
+    /// Factors and boundary compliances.
     fn factorise(&mut self, world: &World) -> Result<(), Failure> {
         let all = self.work.par_iter_mut().zip(&world.bodies).zip(&mut self.compliance).enumerate();
         collect(all.map(|(number, ((work, body), compliance))| {
@@ -288,13 +301,21 @@ impl Implicit {
             }
             work.matrix.factorise(profile).map_err(|_| Failure::Indefinite { body: number })?;
             work.matrix.contact_compliance(profile, compliance);
+            Ok(())
+        }))
+    }
+
+    /// The velocities without contact.
+    fn release(&mut self, world: &World) {
+        let all = self.work.par_iter_mut().zip(&world.bodies);
+        all.for_each(|(work, body)| {
+            let profile = &body.template.profile;
             work.free.copy_from_slice(&work.residual);
             work.matrix.solve(profile, &mut work.free, &mut work.scratch);
             for (free, v) in work.free.iter_mut().zip(&work.velocity) {
                 *free = v - *free;
             }
-            Ok(())
-        }))
+        });
     }
 
     /// Bounds of the normal velocities: the gap at the end of the step stays open.
