@@ -105,7 +105,7 @@ impl<G: Grains, C: ContactLaw<Planar>> CellDynamics for Dem<Planar, G, PeriodicC
                 pairs.push((i.min(j), i.max(j), response.elastic - response.attraction));
                 let bound = self.law.bound(response.elastic);
                 let tangential = Planar::vector_record(response.tangential);
-                let shear = tangential[0].hypot(tangential[1]);
+                let shear = libm::hypot(tangential[0], tangential[1]);
                 sliding += usize::from(shear > 0.0 && shear >= bound * (1.0 - 1e-9));
             }
         });
@@ -121,7 +121,7 @@ impl<G: Grains, C: ContactLaw<Planar>> CellDynamics for Dem<Planar, G, PeriodicC
         for (slot, (body, force)) in self.bodies.iter().zip(&forces).enumerate() {
             let disc = self.original[slot] as usize;
             let (v, w) = (&body.velocity, body.spin[2]);
-            residuals.forces[disc] = force.force[0].hypot(force.force[1]);
+            residuals.forces[disc] = libm::hypot(force.force[0], force.force[1]);
             residuals.moments[disc] = force.torque[2].abs();
             residuals.kinetic[disc] = 0.5
                 * (self.grains.mass(slot) * (v[0] * v[0] + v[1] * v[1]) + self.grains.inertia(slot) * w * w);
@@ -175,7 +175,7 @@ impl<G: Grains, C: ContactLaw<Planar>> CellDynamics for Dem<Planar, G, PeriodicC
         let spring =
             |force: f64, stiffness: f64| if stiffness > 0.0 { 0.5 * force * force / stiffness } else { 0.0 };
         for contact in &picture.contacts {
-            let length = contact.branch[0].hypot(contact.branch[1]);
+            let length = libm::hypot(contact.branch[0], contact.branch[1]);
             let n = [contact.branch[0] / length, contact.branch[1] / length];
             // Force on j is F_N n − F_T t, where F_T t acts on i.
             let on_j = [

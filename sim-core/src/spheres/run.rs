@@ -7,7 +7,6 @@ use serde::{Deserialize, Serialize};
 use super::memory::{Mark, Memory, Phase, Status};
 use super::{kicks, outcome, start, system};
 use crate::dem::{Drag, Dynamics, View};
-use crate::equilibrium::estimate;
 use crate::equilibrium::evidence::{Evidence, evidence, judge};
 use crate::equilibrium::guard::{self, Guard};
 use crate::equilibrium::plan::Plan;
@@ -237,13 +236,13 @@ impl Run {
 }
 
 fn first_memory(scene: &ReducedSpheres, dt_cap: f64, dt_reason: String) -> Memory {
-    let (expected_steps, step_limit) = estimate::steps(scene, dt_cap);
+    let (expected_steps, step_limit) = scene.steps(dt_cap);
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "a positive count, saturating"
     )]
-    let plan = Plan::new((estimate::settling_time(scene.pressure) / dt_cap) as u64);
+    let plan = Plan::new((scene.settling_time() / dt_cap) as u64);
     Memory {
         plan,
         next_sample: plan.after(0),

@@ -4,7 +4,6 @@ use scene::spheres::{Approach, DampingMass, ReducedSpheres};
 
 use super::system;
 use crate::dem::{InitialState, SphereParameters, largest_step};
-use crate::equilibrium::estimate;
 use crate::packing::spheres::{self as packing, Request};
 use crate::{Explanation, Options, SimError, Skip};
 
@@ -101,7 +100,7 @@ pub(crate) fn explain(scene: &ReducedSpheres) -> Result<Explanation, SimError> {
     /// Size of the small system.
     const TRIAL: u64 = 1000;
     let (dt, dt_reason) = largest_dt(scene);
-    let (expected_steps, _) = estimate::steps(scene, dt);
+    let (expected_steps, _) = scene.steps(dt);
     let trial = ReducedSpheres { n: scene.n.min(TRIAL), ..scene.clone() };
     let system = system::new(&parameters(&trial), &initial_state(&trial)?, dt, &Options::default());
     let bytes = system.counters().bytes;
