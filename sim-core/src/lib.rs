@@ -5,6 +5,7 @@
     reason = "components of small vectors and lanes are addressed by axis and lane, several arrays at once"
 )]
 
+pub mod bench;
 mod boundary;
 mod compile;
 pub mod consolidation;

@@ -9,3 +9,27 @@ mod system;
 
 pub(crate) use run::Run;
 pub(crate) use start::explain;
+
+use crate::dem::Dynamics;
+use crate::{Options, SimError};
+
+/// The bare particle system of a scene for [`crate::bench`]: at its initial state, or at a saved one.
+///
+/// # Errors
+/// [`SimError::Scene`] without an engine or an initial state, [`SimError::Checkpoint`] for foreign bytes.
+pub(crate) fn bench_system(
+    scene: &scene::Reduced,
+    saved: Option<&[u8]>,
+    options: &Options,
+) -> Result<Box<dyn Dynamics>, SimError> {
+    let scene::Reduced::CohesiveSpheres(spheres) = scene else {
+        return Err(crate::compile::no_engine(scene));
+    };
+    let parameters = start::parameters(spheres);
+    match saved {
+        Some(bytes) => system::restore(&parameters, bytes, options),
+        None => {
+            system::new(&parameters, &start::initial_state(spheres)?, start::largest_dt(spheres).0, options)
+        }
+    }
+}

@@ -1,6 +1,7 @@
 //! The hot loops: contacts of a chunk, motion of a chunk. Written once; compiled for each path.
 
 use std::marker::PhantomData;
+use std::mem::MaybeUninit;
 
 use crate::boundary::Boundary;
 use crate::contact::{ContactLaw, PairGeometry, PairMotion, Response};
@@ -75,6 +76,18 @@ pub struct Pass<'a, S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
     pub space: PhantomData<S>,
 }
 
+/// Groups whose meetings are worked out before the law is applied to any of them. The chain of dependent operations
+/// from the positions of a group to its forces fills the reorder buffer of a core; cut in two through a small buffer
+/// in the first-level cache, several groups are in flight.
+const BATCH: usize = 16;
+
+/// A contact or group of contacts before the law.
+#[derive(Clone, Copy)]
+struct Meeting<S: Space, L: Lane> {
+    geometry: PairGeometry<S, L>,
+    motion: PairMotion<S, L>,
+}
+
 /// One contact or group of contacts: geometry and forces.
 pub struct Evaluated<S: Space, L: Lane> {
     /// Unit normal from a to b.
@@ -100,6 +113,16 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// `a`, `b` point to `L::WIDTH` indices of bodies, `memory` to the slots of these contacts.
     #[inline(always)]
     pub unsafe fn pair<L: Lane>(&self, a: *const u32, b: *const u32, memory: *mut f64) -> Evaluated<S, L> {
+        // SAFETY: the caller vouches.
+        unsafe { self.respond(&self.meet::<L>(a, b), memory) }
+    }
+
+    /// First half of a pair contact: where the bodies are and how they move.
+    ///
+    /// # Safety
+    /// `a`, `b` point to `L::WIDTH` indices of bodies.
+    #[inline(always)]
+    unsafe fn meet<L: Lane>(&self, a: *const u32, b: *const u32) -> Meeting<S, L> {
         // SAFETY: the caller vouches for the indices; so throughout.
         let separation = S::vector(unsafe { L::difference::<0>(self.bodies, a, b) });
         let velocity = S::vector(unsafe { L::difference::<1>(self.bodies, a, b) });
@@ -133,8 +156,20 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
                 }
             }
         }
-        // SAFETY: see above.
-        let response = unsafe { self.law.evaluate(&geometry, &motion, L::splat(self.dt), memory) };
+        Meeting { geometry, motion }
+    }
+
+    /// Second half of a pair contact: the law.
+    ///
+    /// # Safety
+    /// `memory` points to the slots of these contacts.
+    #[inline(always)]
+    unsafe fn respond<L: Lane>(&self, meeting: &Meeting<S, L>, memory: *mut f64) -> Evaluated<S, L> {
+        let Meeting { geometry, motion } = meeting;
+        let PairGeometry { normal, overlap, radius_a, radius_b, .. } = *geometry;
+        let zero: S::Spin<L> = S::Spin::zero();
+        // SAFETY: the caller vouches for the slots.
+        let response = unsafe { self.law.evaluate(geometry, motion, L::splat(self.dt), memory) };
         let force = response.tangential.sub_scaled(response.normal, normal);
         let (mut torque_a, mut torque_b) = (zero, zero);
         if C::NEEDS_SPIN {
@@ -267,6 +302,39 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         }
     }
 
+    /// The first `groups` groups of the inner contacts, in batches.
+    #[inline(always)]
+    unsafe fn inner_batches<L: Lane>(&self, list: &mut ContactList, groups: usize) {
+        let mut meetings = [const { MaybeUninit::<Meeting<S, L>>::uninit() }; BATCH];
+        let (indices, memory) = (list.indices.as_ptr().cast::<u32>(), list.memory.as_mut_ptr());
+        let mut first = 0;
+        while first < groups {
+            let count = if groups - first < BATCH { groups - first } else { BATCH };
+            let mut k = 0;
+            while k < count {
+                // SAFETY: the list holds valid indices of this chunk and memory for its groups; the buffer is written
+                // before it is read.
+                unsafe {
+                    let a = indices.add((first + k) * 2 * GROUP);
+                    meetings.as_mut_ptr().add(k).write(MaybeUninit::new(self.meet::<L>(a, a.add(GROUP))));
+                }
+                k += 1;
+            }
+            k = 0;
+            while k < count {
+                // SAFETY: as above.
+                unsafe {
+                    let a = indices.add((first + k) * 2 * GROUP);
+                    let meeting = (*meetings.as_ptr().add(k)).assume_init_ref();
+                    let contact = self.respond::<L>(meeting, memory.add((first + k) * C::SLOTS * GROUP));
+                    self.apply::<L>(a, self.forces, a.add(GROUP), &contact);
+                }
+                k += 1;
+            }
+            first += count;
+        }
+    }
+
     /// The force pass of one chunk.
     ///
     /// # Safety
@@ -277,10 +345,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         let whole = |count: usize| if L::WIDTH == GROUP { count / GROUP } else { 0 };
 
         let groups = whole(chunk.inner.count);
-        for group in 0..groups {
-            // SAFETY: group is full; so for every list below.
-            unsafe { self.inner::<L>(&mut chunk.inner, group, 0) };
-        }
+        // SAFETY: these groups are full; so for every list below.
+        unsafe { self.inner_batches::<L>(&mut chunk.inner, groups) };
         for k in groups * GROUP..chunk.inner.count {
             // SAFETY: pair k is in the list.
             unsafe { self.inner::<f64>(&mut chunk.inner, k / GROUP, k % GROUP) };

@@ -1,0 +1,62 @@
+//! Times the force kernel on prepared states: `cargo run --release -p sim-core --example kernel -- SCENE.json STEPS`.
+//! The scene is advanced by its `max_steps` first; the state is kept beside the scene as `.state.tmp`.
+
+use std::error::Error;
+use std::time::Instant;
+
+use sim_core::bench::Bench;
+use sim_core::{KernelChoice, Options};
+
+#[expect(clippy::print_stdout, reason = "an example that prints")]
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().collect();
+    let (path, steps) = (&arguments[1], arguments[2].parse::<u64>()?);
+    let scene = scene::Scene::from_json(&serde_json::from_str(&std::fs::read_to_string(path)?)?)
+        .map_err(|problems| format!("{problems:?}"))?
+        .reduce();
+    let scene::Reduced::CohesiveSpheres(spheres) = &scene else { return Err("not spheres".into()) };
+    let kept = format!("{path}.state.tmp");
+    let options = Options::default();
+    let state = match std::fs::read(&kept) {
+        Ok(bytes) => bytes,
+        Err(_) => {
+            let start = Instant::now();
+            let state = Bench::prepare(&scene, spheres.max_steps.unwrap_or(0), &options)?.save();
+            println!("prepared in {:.1} s", start.elapsed().as_secs_f64());
+            std::fs::write(&kept, &state)?;
+            state
+        }
+    };
+    for (kernel, threads) in
+        [(KernelChoice::Auto, 1), (KernelChoice::Auto, 2), (KernelChoice::Auto, 1), (KernelChoice::Scalar, 1)]
+    {
+        if kernel == KernelChoice::Scalar && arguments.len() < 4 {
+            continue;
+        }
+        let mut bench = Bench::load(&scene, &state, &Options { threads, kernel })?;
+        let before = bench.counters();
+        let mut best = f64::INFINITY;
+        for _ in 0..5 {
+            let start = Instant::now();
+            bench.run(steps)?;
+            best = best.min(start.elapsed().as_secs_f64());
+        }
+        let after = bench.counters();
+        let n = after.particles as f64;
+        println!(
+            "{} threads {}: {:.1} ns per particle-step; per particle {:.3} contacts {:.3} listed {:.3} near {:.3} wall; \
+             {} refreshes {} rebuilds in {} steps",
+            bench.kernel(),
+            after.threads,
+            best * 1e9 / (n * steps as f64),
+            after.contacts as f64 / n,
+            after.listed_pairs as f64 / n,
+            after.near_pairs as f64 / n,
+            after.wall_contacts as f64 / n,
+            after.refreshes - before.refreshes,
+            after.rebuilds - before.rebuilds,
+            5 * steps
+        );
+    }
+    Ok(())
+}
