@@ -84,6 +84,7 @@ const BATCH: usize = 16;
 /// A contact or group of contacts before the law.
 #[derive(Clone, Copy)]
 struct Meeting<S: Space, L: Lane> {
+    separation: S::Vector<L>,
     geometry: PairGeometry<S, L>,
     motion: PairMotion<S, L>,
 }
@@ -156,7 +157,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
                 }
             }
         }
-        Meeting { geometry, motion }
+        Meeting { separation, geometry, motion }
     }
 
     /// Second half of a pair contact: the law.
@@ -165,7 +166,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// `memory` points to the slots of these contacts.
     #[inline(always)]
     unsafe fn respond<L: Lane>(&self, meeting: &Meeting<S, L>, memory: *mut f64) -> Evaluated<S, L> {
-        let Meeting { geometry, motion } = meeting;
+        let Meeting { separation, geometry, motion } = meeting;
+        let separation = *separation;
         let PairGeometry { normal, overlap, radius_a, radius_b, .. } = *geometry;
         let zero: S::Spin<L> = S::Spin::zero();
         // SAFETY: the caller vouches for the slots.
