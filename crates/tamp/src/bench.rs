@@ -1,11 +1,12 @@
 //! `tamp bench`: the cost of a step, from a given state, as JSON.
 
-use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
 
+use scene::Reduced;
 use serde::Serialize;
-use sim_core::{KernelChoice, Options, Simulation};
-use worker::checkpoint;
+use sim_core::bench::Bench;
+use sim_core::{KernelChoice, Options};
 
 use crate::failure::Failure;
 use crate::{input, output};
@@ -19,15 +20,15 @@ pub struct Arguments {
     #[arg(value_name = "KEY=VALUE")]
     overrides: Vec<String>,
     /// Steps per repetition
-    #[arg(long, default_value_t = 1000)]
+    #[arg(long, default_value_t = 200)]
     steps: u64,
     /// Repetitions; the fastest counts
     #[arg(long, default_value_t = 5)]
     repeats: u32,
-    /// Steps before the first repetition, to reach the state of interest
-    #[arg(long, default_value_t = 0)]
-    warmup: u64,
-    /// Begin from this checkpoint, as written by tamp run --checkpoint
+    /// Steps from the initial state to the one that is timed [default: max_steps of the scene]
+    #[arg(long, value_name = "STEPS")]
+    prepare: Option<u64>,
+    /// Keep the prepared state here and begin from it next time
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
     /// Threads inside the scene
@@ -47,14 +48,22 @@ struct Measured {
     repeats: Vec<f64>,
     /// Particles.
     particles: u64,
-    /// Contacts and other live numbers at the end.
-    live: record::Row,
+    /// Touching pairs.
+    contacts: u64,
+    /// Pairs evaluated each step, touching ones included.
+    listed_pairs: u64,
+    /// Pairs in the neighbour list.
+    near_pairs: u64,
+    /// Touching particle-wall pairs.
+    wall_contacts: u64,
+    /// Neighbour list rebuilds during all repetitions.
+    rebuilds: u64,
+    /// Bytes of the state and its lists.
+    bytes: u64,
     /// Steps per repetition.
     steps: u64,
-    /// Steps before the first repetition.
-    begun_at_step: u64,
     /// Threads inside the scene.
-    threads: usize,
+    threads: u64,
     /// Compiled kernel.
     kernel: String,
     /// Hardware class.
@@ -71,62 +80,62 @@ pub fn bench(arguments: &Arguments) -> Result<(), Failure> {
         return Err(Failure::input("steps", "0", "is out of range", "give 1 or more steps and repeats"));
     }
     let scene = input::scene(&arguments.file, &arguments.overrides)?;
-    let mut simulation = begin(arguments, &scene)?;
-    advance(simulation.as_mut(), arguments.warmup)?;
-    let begun_at_step = simulation.progress().steps;
+    let reduced = scene.reduce();
+    let mut bench = prepared(arguments, &reduced)?;
+    let before = bench.counters();
     let mut repeats = Vec::new();
     for _ in 0..arguments.repeats {
-        let (done, elapsed) = advance(simulation.as_mut(), arguments.steps)?;
-        if done < arguments.steps {
-            let what = format!("the run ended after {done} steps of a repetition");
-            let remedy = "use fewer steps, a state further from the end, or stop=steps";
-            return Err(Failure::input("steps", arguments.steps.to_string(), what, remedy));
-        }
+        let begun = Instant::now();
+        bench.run(arguments.steps)?;
+        let elapsed = begun.elapsed();
         #[expect(clippy::cast_precision_loss, reason = "a rate")]
-        let work = done as f64 * simulation.progress().particles as f64;
+        let work = arguments.steps as f64 * before.particles as f64;
         repeats.push(elapsed.as_secs_f64() * 1e9 / work);
     }
-    let progress = simulation.progress();
+    let after = bench.counters();
     output::json(&Measured {
         ns_per_particle_step: repeats.iter().copied().fold(f64::INFINITY, f64::min),
         repeats,
-        particles: progress.particles,
-        live: progress.live,
+        particles: after.particles,
+        contacts: after.contacts,
+        listed_pairs: after.listed_pairs,
+        near_pairs: after.near_pairs,
+        wall_contacts: after.wall_contacts,
+        rebuilds: after.rebuilds - before.rebuilds,
+        bytes: after.bytes,
         steps: arguments.steps,
-        begun_at_step,
-        threads: arguments.threads,
-        kernel: simulation.kernel(),
+        threads: after.threads,
+        kernel: bench.kernel(),
         hardware: worker::host::hardware(),
         scene_key: scene.key().to_string(),
         code_version: worker::CODE_VERSION,
     })
 }
 
-fn begin(arguments: &Arguments, scene: &scene::Scene) -> Result<Box<dyn Simulation>, Failure> {
+/// The state to be timed: kept from the last time, or made now.
+fn prepared(arguments: &Arguments, reduced: &Reduced) -> Result<Bench, Failure> {
     let kernel = if arguments.scalar { KernelChoice::Scalar } else { KernelChoice::Auto };
     let options = Options { threads: arguments.threads.max(1), kernel };
-    let reduced = scene.reduce();
-    let Some(path) = &arguments.state else { return Ok(sim_core::compile(&reduced, &options)?) };
-    let bytes = std::fs::read(path).map_err(|error| Failure::file(path, &error))?;
-    let (_, state) = checkpoint::open(&bytes, &scene.key()).map_err(|damaged| {
-        let remedy = "make it with tamp run --checkpoint from the same scene";
-        Failure::input("state", path.display().to_string(), format!("is {damaged}"), remedy)
-    })?;
-    Ok(sim_core::restore(&reduced, &options, &state)?)
+    if let Some(path) = arguments.state.as_deref().filter(|path| path.exists()) {
+        return load(path, reduced, &options);
+    }
+    let steps = arguments.prepare.or_else(|| max_steps(reduced)).unwrap_or(0);
+    let bench = Bench::prepare(reduced, steps, &options)?;
+    if let Some(path) = &arguments.state {
+        worker::write_durably(path, &bench.save()).map_err(|error| Failure::file(path, &error))?;
+    }
+    Ok(bench)
 }
 
-/// Advances by `steps`, or to the end of the run; answers steps done and wall time.
-fn advance(simulation: &mut dyn Simulation, steps: u64) -> Result<(u64, Duration), Failure> {
-    let first = simulation.progress().steps;
-    let begun = Instant::now();
-    let mut done = 0;
-    while done < steps {
-        let progress = simulation.advance(steps - done)?;
-        let now = progress.steps - first;
-        if progress.finished || now == done {
-            return Ok((now, begun.elapsed()));
-        }
-        done = now;
-    }
-    Ok((done, begun.elapsed()))
+fn load(path: &Path, reduced: &Reduced, options: &Options) -> Result<Bench, Failure> {
+    let bytes = std::fs::read(path).map_err(|error| Failure::file(path, &error))?;
+    Bench::load(reduced, &bytes, options).map_err(|error| {
+        let remedy = "remove the file to prepare the state anew";
+        Failure::input("state", path.display().to_string(), error.to_string(), remedy)
+    })
+}
+
+/// The step limit that the scene itself gives.
+fn max_steps(reduced: &Reduced) -> Option<u64> {
+    reduced.to_json().get("max_steps")?.as_u64()
 }
