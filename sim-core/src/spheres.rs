@@ -23,13 +23,18 @@ pub(crate) fn bench_system(
     options: &Options,
 ) -> Result<Box<dyn Dynamics>, SimError> {
     let scene::Reduced::CohesiveSpheres(spheres) = scene else {
-        return Err(crate::compile::no_engine(scene));
+        return Err(SimError::Scene {
+            field: "model".to_owned(),
+            problem: format!("prepared states of {} cannot be timed", scene.model().name()),
+            remedy: "use model cohesive_spheres".to_owned(),
+        });
     };
     let parameters = start::parameters(spheres);
     match saved {
         Some(bytes) => system::restore(&parameters, bytes, options),
         None => {
-            system::new(&parameters, &start::initial_state(spheres)?, start::largest_dt(spheres).0, options)
+            let initial = start::initial_state(spheres)?;
+            Ok(system::new(&parameters, &initial, start::largest_dt(spheres).0, options))
         }
     }
 }
