@@ -33,6 +33,11 @@ pub const PRESETS: &[Preset] = &[
         summary: "the 36 samples of the study of cohesive powders under isotropic loads (2008), 1400 to 10976 discs",
         text: include_str!("../../../examples/consolidation-2008.json"),
     },
+    Preset {
+        name: "plastic-compaction-2021",
+        summary: "the 4 materials of the study of plastic disc packings (2021), 300 discs each, 3 packings",
+        text: include_str!("../../../examples/plastic-compaction-2021.json"),
+    },
 ];
 
 /// Fields of a definition that an override may replace beside the keys of the model.

@@ -2,6 +2,7 @@
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 mod assembly;
+mod bodies;
 mod material_point;
 mod reference;
 mod scenes;
