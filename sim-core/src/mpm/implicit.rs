@@ -267,7 +267,9 @@ impl Implicit {
             for (unknown, r) in work.residual.iter().enumerate() {
                 let row = profile.row_of(unknown);
                 let p = if row >= inner { impulse[row - inner] } else { 0.0 };
-                residual += (r - p) * (r - p);
+                // what holds an unknown at rest also takes the impulse on it
+                let left = if body.fixed.contains(&(unknown as u32)) { 0.0 } else { r - p };
+                residual += left * left;
                 contact += p * p;
                 let force = dt * work.force[unknown];
                 forces += force * force;
