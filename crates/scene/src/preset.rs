@@ -35,7 +35,7 @@ pub const PRESETS: &[Preset] = &[
     },
     Preset {
         name: "plastic-compaction-2021",
-        summary: "the 4 materials of the study of plastic disc packings (2021), 300 discs each, 3 packings",
+        summary: "the 4 materials of the study of plastic disc packings (2021): one disc, its lattice cell, 3 packings of 300",
         text: include_str!("../../../examples/plastic-compaction-2021.json"),
     },
 ];
