@@ -209,9 +209,11 @@ impl<G: Grains, C: ContactLaw<Planar>> Dem<Planar, G, PeriodicCell, C> {
                     for slot in 0..C::SLOTS {
                         memory[slot * GROUP] = list.slot(k, slot);
                     }
+                    let constants = super::kernel::constants_of(&self.grains, a, b);
                     // SAFETY: the list holds valid slots, the copy of the memory has room for one lane.
-                    let contact =
-                        unsafe { pass.pair::<f64>(&raw const a, &raw const b, memory.as_mut_ptr()) };
+                    let contact = unsafe {
+                        pass.pair::<f64>(&raw const a, &raw const b, memory.as_mut_ptr(), constants.as_ptr())
+                    };
                     visit(a, b, &contact);
                 }
             }

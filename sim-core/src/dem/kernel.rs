@@ -76,6 +76,22 @@ pub struct Pass<'a, S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
     pub space: PhantomData<S>,
 }
 
+/// Where the constants of a contact lie.
+#[inline(always)]
+unsafe fn constants<G: Grains>(list: &ContactList, group: usize, lane: usize) -> *const f64 {
+    // SAFETY: the caller names a contact of the list.
+    unsafe { list.constants.as_ptr().add(if G::CONSTANTS == 0 { 0 } else { group * 3 * GROUP + lane }) }
+}
+
+/// The constants of one pair in the rows of a group, lane 0.
+pub fn constants_of<G: Grains>(grains: &G, a: u32, b: u32) -> [f64; 3 * GROUP] {
+    let mut rows = [0.0; 3 * GROUP];
+    for (row, value) in grains.constants(a as usize, b as usize).into_iter().enumerate() {
+        rows[row * GROUP] = value;
+    }
+    rows
+}
+
 /// Groups whose meetings are worked out before the law is applied to any of them. The chain of dependent operations
 /// from the positions of a group to its forces fills the reorder buffer of a core; cut in two through a small buffer
 /// in the first-level cache, several groups are in flight.
@@ -111,19 +127,26 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// Pair contacts a–b.
     ///
     /// # Safety
-    /// `a`, `b` point to `L::WIDTH` indices of bodies, `memory` to the slots of these contacts.
+    /// `a`, `b` point to `L::WIDTH` indices of bodies, `memory` to the slots and `constants` to the constants of these
+    /// contacts.
     #[inline(always)]
-    pub unsafe fn pair<L: Lane>(&self, a: *const u32, b: *const u32, memory: *mut f64) -> Evaluated<S, L> {
+    pub unsafe fn pair<L: Lane>(
+        &self,
+        a: *const u32,
+        b: *const u32,
+        memory: *mut f64,
+        constants: *const f64,
+    ) -> Evaluated<S, L> {
         // SAFETY: the caller vouches.
-        unsafe { self.respond(&self.meet::<L>(a, b), memory) }
+        unsafe { self.respond(&self.meet::<L>(a, b, constants), memory) }
     }
 
     /// First half of a pair contact: where the bodies are and how they move.
     ///
     /// # Safety
-    /// `a`, `b` point to `L::WIDTH` indices of bodies.
+    /// `a`, `b` point to `L::WIDTH` indices of bodies, `constants` to the constants of these contacts.
     #[inline(always)]
-    unsafe fn meet<L: Lane>(&self, a: *const u32, b: *const u32) -> Meeting<S, L> {
+    unsafe fn meet<L: Lane>(&self, a: *const u32, b: *const u32, constants: *const f64) -> Meeting<S, L> {
         // SAFETY: the caller vouches for the indices; so throughout.
         let separation = S::vector(unsafe { L::difference::<0>(self.bodies, a, b) });
         let velocity = S::vector(unsafe { L::difference::<1>(self.bodies, a, b) });
@@ -132,10 +155,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         let inverse_distance = L::splat(1.0).div(distance);
         let normal = separation.scale(inverse_distance);
         // SAFETY: see above.
-        let (radius_a, radius_b) = unsafe { (self.grains.radii::<L>(a), self.grains.radii::<L>(b)) };
+        let [radius_a, radius_b, root_mass] = unsafe { self.grains.pair::<L>(constants) };
         let overlap = radius_a.add(radius_b).sub(distance);
-        // SAFETY: see above.
-        let root_mass = unsafe { self.grains.root_pair_mass::<L>(a, b) };
         let geometry = PairGeometry { normal, overlap, inverse_distance, radius_a, radius_b, root_mass };
 
         let zero: S::Spin<L> = S::Spin::zero();
@@ -144,16 +165,20 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         if C::NEEDS_SPIN {
             // SAFETY: see above.
             unsafe {
-                motion.spin_sum = S::spin(L::sum::<2>(self.bodies, a, b));
-                motion.rim = if G::EQUAL {
-                    motion.spin_sum.scale(radius_a)
+                if G::EQUAL {
+                    motion.spin_sum = S::spin(L::sum::<2>(self.bodies, a, b));
+                    motion.rim = motion.spin_sum.scale(radius_a);
+                    if C::ROLLS {
+                        motion.spin_difference = S::spin(L::difference::<2>(self.bodies, a, b));
+                    }
                 } else {
                     let of_a: S::Spin<L> = S::spin(L::record::<2>(self.bodies, a));
                     let of_b: S::Spin<L> = S::spin(L::record::<2>(self.bodies, b));
-                    of_a.scale(radius_a).add_scaled(radius_b, of_b)
-                };
-                if C::ROLLS {
-                    motion.spin_difference = S::spin(L::difference::<2>(self.bodies, a, b));
+                    motion.spin_sum = of_a.add(of_b);
+                    motion.rim = of_a.scale(radius_a).add_scaled(radius_b, of_b);
+                    if C::ROLLS {
+                        motion.spin_difference = of_b.add_scaled(L::splat(-1.0), of_a);
+                    }
                 }
             }
         }
@@ -299,7 +324,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         unsafe {
             let (a, b) = (indices.add(lane), indices.add(GROUP + lane));
             let memory = list.memory.as_mut_ptr().add(group * C::SLOTS * GROUP + lane);
-            let contact = self.pair::<L>(a, b, memory);
+            let constants = constants::<G>(list, group, lane);
+            let contact = self.pair::<L>(a, b, memory, constants);
             self.apply::<L>(a, self.forces, b, &contact);
         }
     }
@@ -318,7 +344,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
                 // before it is read.
                 unsafe {
                     let a = indices.add((first + k) * 2 * GROUP);
-                    meetings.as_mut_ptr().add(k).write(MaybeUninit::new(self.meet::<L>(a, a.add(GROUP))));
+                    let constants = constants::<G>(list, first + k, 0);
+                    meetings.as_mut_ptr().add(k).write(MaybeUninit::new(self.meet::<L>(
+                        a,
+                        a.add(GROUP),
+                        constants,
+                    )));
                 }
                 k += 1;
             }
@@ -443,7 +474,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         unsafe {
             let (a, b) = (indices.add(lane), indices.add(GROUP + lane));
             let memory = chunk.outer.memory.as_mut_ptr().add(group * C::SLOTS * GROUP + lane);
-            let contact = self.pair::<L>(a, b, memory);
+            let constants = constants::<G>(&chunk.outer, group, lane);
+            let contact = self.pair::<L>(a, b, memory, constants);
             self.apply::<L>(a, ghosts, targets.add(lane), &contact);
         }
     }

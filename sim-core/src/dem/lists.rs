@@ -258,6 +258,9 @@ fn list_pairs<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>>(
                 }
                 let known = *at < old.count && old.pair(*at) == pair;
                 list.push(pair.0, pair.1, known.then_some((old, *at)), C::vacant);
+                if G::CONSTANTS > 0 {
+                    list.set_constants(grains.constants(i, j as usize));
+                }
             }
         }
     }

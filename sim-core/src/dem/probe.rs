@@ -6,7 +6,7 @@ use super::{Energies, PairContact, View, WallContact, WallView};
 use crate::boundary::Boundary;
 use crate::contact::ContactLaw;
 use crate::control::ServoWalls;
-use crate::dem::kernel::Evaluated;
+use crate::dem::kernel::{Evaluated, constants_of};
 use crate::lane::GROUP;
 use crate::space::{Space, Vector};
 use crate::state::{Body, ContactList, Force, Grains};
@@ -44,8 +44,11 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             for list in [&chunk.inner, &chunk.outer] {
                 for k in 0..list.count {
                     let (a, b) = list.pair(k);
+                    let constants = constants_of(&self.grains, a, b);
                     // SAFETY: the list holds valid slots, the copy of the memory has room for one lane.
-                    let contact = unsafe { pass.pair::<f64>(&raw const a, &raw const b, recall(list, k)) };
+                    let contact = unsafe {
+                        pass.pair::<f64>(&raw const a, &raw const b, recall(list, k), constants.as_ptr())
+                    };
                     let (force, torque_a) = (record::<S>(&contact), S::spin_record(contact.torque_a));
                     let torque_b = S::spin_record(contact.torque_b);
                     for axis in 0..3 {

@@ -16,6 +16,8 @@ pub struct ContactList {
     pub memory: Vec<f64>,
     /// Memory slots per contact.
     pub slots: usize,
+    /// Constants of the groups, three rows of four each; empty when the particles need none.
+    pub constants: Vec<f64>,
 }
 
 impl ContactList {
@@ -30,6 +32,20 @@ impl ContactList {
         self.count = 0;
         self.indices.clear();
         self.memory.clear();
+        self.constants.clear();
+    }
+
+    /// Gives the newest pair its constants.
+    #[inline]
+    pub fn set_constants(&mut self, values: [f64; 3]) {
+        let (group, lane) = ((self.count - 1) / GROUP, (self.count - 1) % GROUP);
+        let base = group * 3 * GROUP;
+        if self.constants.len() <= base {
+            self.constants.resize(base + 3 * GROUP, 1.0);
+        }
+        for (row, value) in values.into_iter().enumerate() {
+            self.constants[base + row * GROUP + lane] = value;
+        }
     }
 
     /// The pair at `k`.

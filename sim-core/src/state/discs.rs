@@ -1,7 +1,7 @@
 //! Discs of different sizes.
 
 use super::Grains;
-use crate::lane::Lane;
+use crate::lane::{GROUP, Lane};
 
 /// Discs with m = d² (unit mass at d = 1) and moment of inertia m d²/8, by slot.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,7 +23,18 @@ impl Discs {
 
 impl Grains for Discs {
     const EQUAL: bool = false;
+    const CONSTANTS: usize = 3;
 
+    fn constants(&self, a: usize, b: usize) -> [f64; 3] {
+        let (r, s) = (self.radius[a], self.radius[b]);
+        let product = r * s;
+        [r, s, (product + product) / r.mul_add(r, s * s).sqrt()]
+    }
+    #[inline(always)]
+    unsafe fn pair<L: Lane>(&self, constants: *const f64) -> [L; 3] {
+        // SAFETY: the caller vouches for the rows.
+        unsafe { [L::load(constants), L::load(constants.add(GROUP)), L::load(constants.add(2 * GROUP))] }
+    }
     #[inline(always)]
     unsafe fn radii<L: Lane>(&self, at: *const u32) -> L {
         // SAFETY: the caller vouches for the indices.

@@ -29,6 +29,16 @@ pub trait Grains: Send + Sync + 'static {
     /// Whether all are equal: then both torques of a contact are equal and one register holds them.
     const EQUAL: bool;
 
+    /// Numbers per listed pair that are worked out once, when the pair is listed.
+    const CONSTANTS: usize;
+
+    /// These numbers: R_a, R_b [d] and √ of the mass in the dashpot [√m]; not asked for when there are none.
+    fn constants(&self, a: usize, b: usize) -> [f64; 3];
+    /// R_a, R_b and √ of the mass in the dashpot of pairs, from their constants in groups of four.
+    ///
+    /// # Safety
+    /// `constants` points to [`Grains::CONSTANTS`] rows of a group at the first lane.
+    unsafe fn pair<L: Lane>(&self, constants: *const f64) -> [L; 3];
     /// Radii of `L::WIDTH` particles [d].
     ///
     /// # Safety
@@ -76,7 +86,15 @@ impl Equal {
 
 impl Grains for Equal {
     const EQUAL: bool = true;
+    const CONSTANTS: usize = 0;
 
+    fn constants(&self, _: usize, _: usize) -> [f64; 3] {
+        [Self::RADIUS, Self::RADIUS, self.root_pair_mass]
+    }
+    #[inline(always)]
+    unsafe fn pair<L: Lane>(&self, _: *const f64) -> [L; 3] {
+        [L::splat(Self::RADIUS), L::splat(Self::RADIUS), L::splat(self.root_pair_mass)]
+    }
     #[inline(always)]
     unsafe fn radii<L: Lane>(&self, _: *const u32) -> L {
         L::splat(Self::RADIUS)
