@@ -8,6 +8,8 @@ pub mod constitutive;
 pub mod contact;
 pub mod element;
 mod explain;
+pub mod explicit;
+pub mod failure;
 pub mod implicit;
 pub mod observe;
 pub mod packing;

@@ -48,6 +48,8 @@ pub enum HardeningMeaning {
 pub enum Method {
     /// Total Lagrangian, implicit, contact solved inside each Newton iteration: the reference.
     Implicit,
+    /// The same bodies, law and contact with explicit steps on lumped masses: the fast variant.
+    Explicit,
 }
 
 /// How strain and rotation are read from the motion.
@@ -100,7 +102,7 @@ pub struct Plastic {
     pub strain_end: Option<f64>,
     /// How the motion is integrated.
     pub method: Method,
-    /// Time step of the implicit method [s]; `None`: by the speed of the wall.
+    /// Time step [s]; `None`: by the speed of the wall, or the stable one of the explicit method.
     pub dt: Option<f64>,
     /// Time integration parameter θ [1].
     pub theta: f64,
@@ -144,7 +146,7 @@ pub struct ReducedPlastic {
     pub strain_end: f64,
     /// How the motion is integrated.
     pub method: Method,
-    /// Time step of the implicit method [d √(ρ/E)]; `None`: by the speed of the wall.
+    /// Time step [d √(ρ/E)]; `None`: by the speed of the wall, or the stable one of the explicit method.
     pub dt: Option<f64>,
     /// Time integration parameter θ [1].
     pub theta: f64,

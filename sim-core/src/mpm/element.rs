@@ -1,11 +1,13 @@
 //! Internal forces and tangent of a body: Σ_p V_p σ_p ∇N_a, with cell-mean volume change (F-bar) against locking.
 
 mod force;
+mod lanes;
 mod tangent;
 
 use serde::{Deserialize, Serialize};
 
 pub use force::internal_force;
+pub use lanes::{advance_points, advance_points_plain, force_of_state};
 pub use tangent::internal_force_and_tangent;
 
 use super::constitutive::{Kinematics, Material};

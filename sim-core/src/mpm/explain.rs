@@ -1,6 +1,6 @@
 //! What a scene of plastic discs would run.
 
-use scene::plastic::ReducedPlastic;
+use scene::plastic::{Method, ReducedPlastic};
 
 use crate::{Explanation, Skip};
 
@@ -10,7 +10,10 @@ pub fn explain(scene: &ReducedPlastic) -> Explanation {
     let absent = |condition: bool, absent: &str, skipped: &str| {
         condition.then(|| Skip { absent: absent.to_owned(), skipped: skipped.to_owned() })
     };
-    let dt_reason = if scene.dt.is_some() {
+    let dt_reason = if scene.method == Method::Explicit {
+        "the stable step of the explicit method, estimated before the mesh is there; it shrinks as cells are squeezed; \
+         recorded states fall on whole steps"
+    } else if scene.dt.is_some() {
         "asked for, cut so that recorded states fall on whole steps"
     } else {
         "the wall moves by at most a quarter of the smallest cell and a thousandth of the height; recorded states fall \
@@ -32,7 +35,7 @@ pub fn explain(scene: &ReducedPlastic) -> Explanation {
         dt: scene.time_step(),
         dt_reason: dt_reason.to_owned(),
         // state and trial of a point, its share of nodes, factor and compliance
-        memory_bytes: points * 600,
+        memory_bytes: points * if scene.method == Method::Explicit { 120 } else { 600 },
         expected_steps: cost.steps,
         expected_seconds: cost.seconds,
     }

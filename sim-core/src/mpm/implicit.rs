@@ -12,6 +12,7 @@ use super::contact::gauss_seidel::{self, Tolerance};
 use super::contact::rows::{Rows, tangent};
 use super::contact::{Candidate, Key, Partner, Wall};
 use super::element::{Law, internal_force, internal_force_and_tangent};
+use super::failure::Failure;
 use super::skyline::Skyline;
 use super::world::World;
 
@@ -20,40 +21,6 @@ const SLOW: f64 = 0.5;
 
 /// Mass factor of an unknown held at rest: its response is below round-off.
 const RIGID: f64 = 1e30;
-
-/// Why a step did not converge.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Failure {
-    /// A material point was crushed by the trial step.
-    Inverted {
-        /// Body of the point.
-        body: usize,
-    },
-    /// The tangent of a body is not positive definite.
-    Indefinite {
-        /// The body.
-        body: usize,
-    },
-    /// Newton's iteration did not reach the tolerance.
-    Residual {
-        /// Force residual relative to the forces.
-        residual: f64,
-        /// Worst overlap, or gap under load, in cells.
-        gap: f64,
-    },
-}
-
-impl std::fmt::Display for Failure {
-    fn fmt(&self, out: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Inverted { body } => write!(out, "a material point of body {body} was crushed"),
-            Self::Indefinite { body } => write!(out, "the tangent of body {body} is not positive definite"),
-            Self::Residual { residual, gap } => {
-                write!(out, "relative force residual {residual:.1e}, worst gap error {gap:.1e} cells")
-            }
-        }
-    }
-}
 
 /// Scratch space of one body.
 struct Work {
@@ -387,8 +354,20 @@ impl Implicit {
         }
         world.impulses.clear();
         world.normals.clear();
+        if world.friction > 0.0 {
+            for ((contact, work), body) in self.contact_velocity.iter_mut().zip(&self.work).zip(&world.bodies)
+            {
+                gather_contact(body, &work.velocity, contact);
+            }
+        }
         for row in self.rows.rows.iter().filter(|row| row.impulse != [0.0; 2]) {
             let t = tangent(row.normal);
+            *world.network.entry((row.key.body, row.key.partner)).or_insert(0.0) += row.impulse[0];
+            if world.friction > 0.0 {
+                let u = self.rows.relative(row, &self.contact_velocity);
+                let slip = (0..2).map(|axis| (u[axis] - row.wall_velocity[axis]) * t[axis]).sum::<f64>();
+                world.energies.friction -= row.impulse[1] * slip;
+            }
             if let Partner::Wall(number) = row.key.partner {
                 world.wall_impulse[number as usize] += row.impulse[0];
                 let p = [0, 1].map(|i| row.impulse[0] * row.normal[i] + row.impulse[1] * t[i]);

@@ -26,14 +26,14 @@ impl<T: Real> Mat2<T> {
     }
 
     /// Determinant.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn det(self) -> T {
         self.xx * self.yy - self.xy * self.yx
     }
 
     /// Inverse; the determinant must not vanish.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn inverse(self) -> Self {
         let r = T::constant(1.0) / self.det();
@@ -41,7 +41,7 @@ impl<T: Real> Mat2<T> {
     }
 
     /// Product `self · other`.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn dot(self, other: Self) -> Self {
         Self {
@@ -53,7 +53,7 @@ impl<T: Real> Mat2<T> {
     }
 
     /// Every component times `factor`.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn scaled(self, factor: T) -> Self {
         Self { xx: self.xx * factor, xy: self.xy * factor, yx: self.yx * factor, yy: self.yy * factor }
@@ -78,7 +78,7 @@ impl Stress<f64> {
     pub const ZERO: Self = Self { xx: 0.0, yy: 0.0, zz: 0.0, xy: 0.0 };
 
     /// The same stress as constants of another number type.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn lift<T: Real>(self) -> Stress<T> {
         Stress {
@@ -92,14 +92,14 @@ impl Stress<f64> {
 
 impl<T: Real> Stress<T> {
     /// Mean stress tr(σ)/3.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn mean(self) -> T {
         (self.xx + self.yy + self.zz) * (1.0 / 3.0)
     }
 
     /// Von Mises stress q = √(3/2 s:s).
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn von_mises(self) -> T {
         let m = self.mean();
@@ -108,7 +108,7 @@ impl<T: Real> Stress<T> {
     }
 
     /// R σ Rᵀ for the rotation R = [[cos, sin], [−sin, cos]].
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn rotated(self, cos: T, sin: T) -> Self {
         let (cc, cs, ss) = (cos * cos, cos * sin, sin * sin);

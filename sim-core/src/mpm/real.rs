@@ -1,6 +1,10 @@
-//! Numbers a constitutive law can be written in: plain, or carrying derivatives.
+//! Numbers a constitutive law can be written in: plain, carrying derivatives, or four points at once.
+
+mod quad;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
+
+pub use quad::Quad;
 
 /// A real number or a truncated Taylor polynomial: laws written over `Real` give stress and exact tangent from the
 /// same lines.
@@ -15,23 +19,39 @@ pub trait Real:
     + Add<f64, Output = Self>
     + Sub<f64, Output = Self>
 {
+    /// Result of a comparison: one truth value per point.
+    type Mask: Copy;
     /// The constant `value`.
     fn constant(value: f64) -> Self;
-    /// The value without derivatives.
-    fn value(self) -> f64;
+    /// Where the value is above `limit`.
+    fn above(self, limit: Self) -> Self::Mask;
+    /// Whether a mask holds for any point.
+    fn any(mask: Self::Mask) -> bool;
+    /// `yes` where the mask holds, else `no`.
+    #[must_use]
+    fn choose(mask: Self::Mask, yes: Self, no: Self) -> Self;
     /// Square root.
     #[must_use]
     fn sqrt(self) -> Self;
 }
 
 impl Real for f64 {
+    type Mask = bool;
     #[inline]
     fn constant(value: f64) -> Self {
         value
     }
     #[inline]
-    fn value(self) -> f64 {
-        self
+    fn above(self, limit: Self) -> bool {
+        self > limit
+    }
+    #[inline]
+    fn any(mask: bool) -> bool {
+        mask
+    }
+    #[inline]
+    fn choose(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
     }
     #[inline]
     fn sqrt(self) -> Self {
@@ -128,13 +148,22 @@ impl Sub<f64> for Dual {
 }
 
 impl Real for Dual {
+    type Mask = bool;
     #[inline]
     fn constant(value: f64) -> Self {
         Self { re: value, d: [0.0; 4] }
     }
     #[inline]
-    fn value(self) -> f64 {
-        self.re
+    fn above(self, limit: Self) -> bool {
+        self.re > limit.re
+    }
+    #[inline]
+    fn any(mask: bool) -> bool {
+        mask
+    }
+    #[inline]
+    fn choose(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
     }
     #[inline]
     fn sqrt(self) -> Self {

@@ -6,9 +6,10 @@ mod outcome;
 use std::collections::VecDeque;
 
 use record::{Outcome, Row};
-use scene::plastic::{ReducedPlastic, Setup};
+use scene::plastic::{Method, ReducedPlastic, Setup};
 use serde::{Deserialize, Serialize};
 
+use super::explicit::{Explicit, flush};
 use super::implicit::Implicit;
 use super::observe::network::Impulses;
 use super::observe::state::{Mark, State, View};
@@ -25,7 +26,8 @@ struct Log {
     steps: u64,
     states: Vec<State>,
     marks: VecDeque<Mark>,
-    network: Impulses,
+    /// Time step until the next record.
+    dt: f64,
     /// Impulses of the interval before the last state.
     last_network: Impulses,
     last_interval: f64,
@@ -35,16 +37,38 @@ struct Log {
     status: String,
 }
 
+/// How a step is made; scratch space alone, nothing that a run depends on.
+enum Solver {
+    Implicit(Box<Implicit>),
+    Explicit(Box<Explicit>),
+}
+
+impl Solver {
+    fn new(scene: &ReducedPlastic, world: &World) -> Self {
+        match scene.method {
+            Method::Implicit => Self::Implicit(Box::new(Implicit::new(world))),
+            Method::Explicit => Self::Explicit(Box::new(Explicit::new(world))),
+        }
+    }
+
+    /// The step until the next record: as the scene has it, and within the stable one.
+    fn time_step(&self, scene: &ReducedPlastic, world: &World) -> f64 {
+        match self {
+            Self::Implicit(_) => scene.time_step(),
+            Self::Explicit(explicit) => scene.whole_step(explicit.time_step(world)),
+        }
+    }
+}
+
 /// The simulation.
 pub struct PlasticDiscs {
     scene: ReducedPlastic,
     world: World,
     width: f64,
     height: f64,
-    dt: f64,
     window: f64,
     log: Log,
-    solver: Implicit,
+    solver: Solver,
     pool: Option<rayon::ThreadPool>,
 }
 
@@ -57,17 +81,20 @@ impl PlasticDiscs {
         let Scenery { world, width, height } = build(scene)?;
         let window = if scene.setup == Setup::Assembly {
             WINDOW / (world.law.material.shear() / world.law.material.density).sqrt()
+        } else if scene.method == Method::Explicit {
+            // the last step alone shows the noise of single impacts
+            scene.strain_step * height / scene.wall_speed
         } else {
             0.0
         };
-        let solver = Implicit::new(&world);
+        let solver = Solver::new(scene, &world);
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(options.threads.max(1))
             .build()
             .map_err(|error| SimError::Internal(format!("thread pool: {error}")))?;
-        let log = Log { next_strain: scene.strain_step, ..Log::default() };
-        let dt = scene.time_step();
-        Ok(Self { scene: scene.clone(), world, width, height, dt, window, log, solver, pool: Some(pool) })
+        let dt = solver.time_step(scene, &world);
+        let log = Log { next_strain: scene.strain_step, dt, ..Log::default() };
+        Ok(Self { scene: scene.clone(), world, width, height, window, log, solver, pool: Some(pool) })
     }
 
     /// The world, to look at.
@@ -84,13 +111,12 @@ impl PlasticDiscs {
 
     fn step(&mut self) -> Result<(), SimError> {
         let step = self.log.steps + 1;
-        self.solver
-            .step(&mut self.world, self.dt)
-            .map_err(|failure| SimError::NotConverged { step, what: failure.to_string() })?;
+        let done = match &mut self.solver {
+            Solver::Implicit(solver) => solver.step(&mut self.world, self.log.dt),
+            Solver::Explicit(solver) => solver.step(&mut self.world, self.log.dt),
+        };
+        done.map_err(|failure| SimError::NotConverged { step, what: failure.to_string() })?;
         self.log.steps = step;
-        for (key, impulse) in &self.world.impulses {
-            *self.log.network.entry((key.body, key.partner)).or_insert(0.0) += impulse[0];
-        }
         let strain = self.strain();
         if strain >= self.log.next_strain * (1.0 - 1e-9) || strain >= self.scene.strain_end * (1.0 - 1e-9) {
             self.record(strain);
@@ -118,7 +144,13 @@ impl PlasticDiscs {
 
     fn record(&mut self, strain: f64) {
         let interval = self.world.time - self.log.since;
-        self.log.last_network = std::mem::take(&mut self.log.network);
+        if let Solver::Explicit(_) = self.solver {
+            let World { memory, network, impulses, .. } = &mut self.world;
+            flush(&mut memory.slots, network);
+            let bearing = memory.slots.iter().filter(|slot| slot.impulse != [0.0; 2]);
+            *impulses = bearing.map(|slot| (slot.key, slot.impulse)).collect();
+        }
+        self.log.last_network = std::mem::take(&mut self.world.network);
         self.log.last_interval = interval;
         let state = self.view().state(self.log.steps);
         self.log.marks.push_back(Mark { time: self.world.time, impulse: self.world.wall_impulse.clone() });
@@ -135,6 +167,7 @@ impl PlasticDiscs {
             self.log.status = if phi_reached { "phi_reached" } else { "strain_reached" }.to_owned();
         }
         self.log.states.push(state);
+        self.log.dt = self.solver.time_step(&self.scene, &self.world);
     }
 
     /// Steps the whole run is expected to take, from the strain covered so far.
@@ -207,7 +240,11 @@ pub(super) fn kernel(scene: &ReducedPlastic) -> String {
     let friction = if scene.mu > 0.0 { "coulomb" } else { "frictionless" };
     let material = if scene.sigma_y.is_some() { "von_mises" } else { "elastic" };
     let bar = if scene.f_bar { "+f_bar" } else { "" };
-    format!("mpm2d+total_lagrangian+bilinear{bar}+{material}+implicit+markers+{friction}")
+    let method = match scene.method {
+        Method::Implicit => "implicit",
+        Method::Explicit => "explicit",
+    };
+    format!("mpm2d+total_lagrangian+bilinear{bar}+{material}+{method}+markers+{friction}")
 }
 
 /// Continues from a checkpoint.
@@ -217,5 +254,6 @@ pub(super) fn kernel(scene: &ReducedPlastic) -> String {
 pub fn restore(scene: &ReducedPlastic, options: &Options, bytes: &[u8]) -> Result<PlasticDiscs, SimError> {
     let mut simulation = PlasticDiscs::new(scene, options)?;
     checkpoint::load(&mut simulation, bytes)?;
+    simulation.solver = Solver::new(scene, &simulation.world);
     Ok(simulation)
 }

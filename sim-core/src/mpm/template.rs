@@ -8,6 +8,7 @@ mod order;
 pub use block::block;
 pub use disc::{disc, symmetric_disc};
 
+use super::real::Quad;
 use super::skyline::Profile;
 
 /// A body's discretisation. Lengths are in units of the body's size (the radius of a disc).
@@ -41,6 +42,17 @@ pub struct Template {
     pub contact_rows: Vec<u32>,
     /// Typical cell width.
     pub cell: f64,
+    /// Gradients and volumes of bilinear cells, four points side by side; empty for other functions.
+    pub lanes: Vec<Lanes>,
+}
+
+/// A bilinear cell with its points side by side.
+#[derive(Clone, Copy, Debug)]
+pub struct Lanes {
+    /// ∇_X N_a of each node, by component.
+    pub gradients: [[Quad; 2]; 4],
+    /// Reference volumes.
+    pub volumes: Quad,
 }
 
 /// A point of the outline, carried by a few nodes.
@@ -143,6 +155,7 @@ impl Template {
         let contact_rows =
             contact_nodes.iter().map(|&node| (profile.row_of(2 * node as usize) - inner) as u32).collect();
         Self {
+            lanes: if nodes_per_cell == 4 { lanes(&gradients, &volumes) } else { Vec::new() },
             entries,
             contact_rows,
             nodes,
@@ -159,6 +172,15 @@ impl Template {
             cell,
         }
     }
+}
+
+fn lanes(gradients: &[[f64; 2]], volumes: &[f64]) -> Vec<Lanes> {
+    let cells = gradients.as_chunks::<16>().0.iter().zip(volumes.as_chunks::<4>().0);
+    let of = |(g, v): (&[[f64; 2]; 16], &[f64; 4])| Lanes {
+        gradients: [0, 1, 2, 3].map(|a| [0, 1].map(|axis| Quad([0, 1, 2, 3].map(|p| g[4 * p + a][axis])))),
+        volumes: Quad(*v),
+    };
+    cells.map(of).collect()
 }
 
 const HALF_GAUSS: f64 = 0.577_350_269_189_625_8;

@@ -3,6 +3,8 @@
 use super::body::Body;
 use super::contact::{Key, Wall};
 use super::element::Law;
+use super::explicit::{DAMPING, Memory};
+use super::observe::network::Impulses;
 
 /// Numerical choices of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,6 +23,10 @@ pub struct Numerics {
     pub impulse: f64,
     /// Most contact sweeps per Newton iteration.
     pub sweeps: usize,
+    /// Relative change of impulses at which the contact sweeps of an explicit step stop.
+    pub explicit_impulse: f64,
+    /// Most contact sweeps of an explicit step.
+    pub explicit_sweeps: usize,
 }
 
 impl Default for Numerics {
@@ -33,6 +39,8 @@ impl Default for Numerics {
             halvings: 8,
             impulse: 1e-5,
             sweeps: 500,
+            explicit_impulse: 1e-3,
+            explicit_sweeps: 20,
         }
     }
 }
@@ -46,6 +54,8 @@ pub struct Energies {
     pub plastic: f64,
     /// Work done against friction.
     pub friction: f64,
+    /// Kinetic energy taken by the damping of the explicit step.
+    pub damping: f64,
 }
 
 /// Effort since the start.
@@ -74,8 +84,14 @@ pub struct World {
     pub friction: f64,
     /// Acceleration of every body [length/time²].
     pub acceleration: [f64; 2],
+    /// Decay rate of the motion that is not rigid in the explicit step [c_S/size].
+    pub damping: f64,
     /// Numerical choices.
     pub numerics: Numerics,
+    /// Contacts of the explicit step.
+    pub memory: Memory,
+    /// Normal impulses between bodies and with walls since they were last taken out.
+    pub network: Impulses,
     /// Impulses of the last step (normal, tangential), sorted by key, and the step they belong to.
     pub impulses: Vec<(Key, [f64; 2])>,
     /// Normals of the same contacts.
@@ -103,7 +119,10 @@ impl World {
             law,
             friction: 0.0,
             acceleration: [0.0; 2],
+            damping: DAMPING,
             numerics: Numerics::default(),
+            memory: Memory::default(),
+            network: Impulses::new(),
             impulses: Vec::new(),
             normals: Vec::new(),
             last_dt: 0.0,

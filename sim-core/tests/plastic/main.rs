@@ -3,6 +3,7 @@
 
 mod assembly;
 mod bodies;
+mod explicit;
 mod material_point;
 mod reference;
 mod scenes;

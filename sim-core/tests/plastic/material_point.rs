@@ -170,8 +170,10 @@ fn the_tangent_is_the_derivative_on_every_branch() {
         let m = material(hardening);
         for (f, p) in gradients.iter().flat_map(|&f| [(f, VIRGIN), (f, base)]) {
             for kinematics in [Kinematics::Jaumann, Kinematics::Infinitesimal] {
-                let exact = advance(&m, p.stress, p.plastic, &increment(dual(f), kinematics));
-                if exact.plastic.value() > 0.0 {
+                let plastic_strain = Dual::constant(p.plastic);
+                let step = increment(dual(f), kinematics);
+                let exact = advance(&m, p.stress.lift(), plastic_strain, &step);
+                if exact.plastic.re > 0.0 {
                     plastic += 1
                 } else {
                     elastic += 1
@@ -214,7 +216,7 @@ fn the_tangent_is_that_of_simo_and_hughes() {
         cos: Dual::constant(1.0),
         sin: Dual::constant(0.0),
     };
-    let update = advance(&m, Stress::ZERO, 0.0, &step);
+    let update = advance(&m, Stress::ZERO.lift(), Dual::constant(0.0), &step);
     let elastic = Material { plasticity: None, ..m };
     let trial = VIRGIN.strained(&elastic, strain[0], strain[1], strain[2]).stress;
     let (mean, q) = (trial.mean(), trial.von_mises());

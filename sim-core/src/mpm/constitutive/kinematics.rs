@@ -34,7 +34,7 @@ pub struct Increment<T = f64> {
 }
 
 /// The increment of a relative deformation gradient.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn increment<T: Real>(f: Mat2<T>, kinematics: Kinematics) -> Increment<T> {
     match kinematics {
@@ -49,7 +49,7 @@ pub fn increment<T: Real>(f: Mat2<T>, kinematics: Kinematics) -> Increment<T> {
     }
 }
 
-#[inline]
+#[inline(always)]
 fn midpoint<T: Real>(f: Mat2<T>) -> Increment<T> {
     let change = Mat2 { xx: f.xx - 1.0, xy: f.xy, yx: f.yx, yy: f.yy - 1.0 };
     let middle = Mat2 { xx: (f.xx + 1.0) * 0.5, xy: f.xy * 0.5, yx: f.yx * 0.5, yy: (f.yy + 1.0) * 0.5 };

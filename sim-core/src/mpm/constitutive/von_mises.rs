@@ -16,39 +16,42 @@ pub struct Update<T = f64> {
 /// σ_tr = RσRᵀ + λ tr(Δε) I + 2G Δε; when q > σ_y + H ε_p, s is scaled back by 1 − 3GΔγ/q with
 /// Δγ = (q − σ_y − H ε_p)/(3G + H), exact for linear hardening (Simo & Hughes, box 3.1). The deviator is the
 /// three-dimensional one, σ_zz included.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn advance<T: Real>(
     material: &Material,
-    stress: Stress,
-    plastic_strain: f64,
+    stress: Stress<T>,
+    plastic_strain: T,
     step: &Increment<T>,
 ) -> Update<T> {
     let shear = material.shear();
     let pressure = (step.xx + step.yy) * material.lame();
-    let rotated = stress.lift::<T>().rotated(step.cos, step.sin);
+    let rotated = stress.rotated(step.cos, step.sin);
     let trial = Stress {
         xx: rotated.xx + pressure + step.xx * (2.0 * shear),
         yy: rotated.yy + pressure + step.yy * (2.0 * shear),
         zz: rotated.zz + pressure,
         xy: rotated.xy + step.xy * (2.0 * shear),
     };
+    let zero = T::constant(0.0);
     let Some(hardening) = material.plasticity else {
-        return Update { stress: trial, plastic: T::constant(0.0) };
+        return Update { stress: trial, plastic: zero };
     };
-    let limit = hardening.yield_stress + hardening.modulus * plastic_strain;
+    let limit = plastic_strain * hardening.modulus + hardening.yield_stress;
     let q = trial.von_mises();
-    if q.value() <= limit {
-        return Update { stress: trial, plastic: T::constant(0.0) };
+    let yields = q.above(limit);
+    if !T::any(yields) {
+        return Update { stress: trial, plastic: zero };
     }
     let plastic = (q - limit) * (1.0 / (3.0 * shear + hardening.modulus));
     let keep = T::constant(1.0) - plastic / q * (3.0 * shear);
     let mean = trial.mean();
+    let returned = |component: T| (component - mean) * keep + mean;
     let stress = Stress {
-        xx: (trial.xx - mean) * keep + mean,
-        yy: (trial.yy - mean) * keep + mean,
-        zz: (trial.zz - mean) * keep + mean,
-        xy: trial.xy * keep,
+        xx: T::choose(yields, returned(trial.xx), trial.xx),
+        yy: T::choose(yields, returned(trial.yy), trial.yy),
+        zz: T::choose(yields, returned(trial.zz), trial.zz),
+        xy: T::choose(yields, trial.xy * keep, trial.xy),
     };
-    Update { stress, plastic }
+    Update { stress, plastic: T::choose(yields, plastic, zero) }
 }

@@ -57,14 +57,36 @@ impl Outline {
     /// The nearest point of the outline: segment, place on it, normal there and gap of `x` along that normal.
     #[must_use]
     pub fn nearest(&self, x: [f64; 2]) -> (usize, f64, [f64; 2], f64) {
-        let n = self.points.len();
         let (mut vertex, mut least) = (0, f64::MAX);
         for (k, p) in self.points.iter().enumerate() {
-            let d = (x[0] - p[0]) * (x[0] - p[0]) + (x[1] - p[1]) * (x[1] - p[1]);
+            let d = square_distance(x, *p);
             if d < least {
                 (vertex, least) = (k, d);
             }
         }
+        self.around(x, vertex)
+    }
+
+    /// The vertex nearest to `x`, walking downhill from `vertex`.
+    #[must_use]
+    pub fn descend(&self, x: [f64; 2], vertex: usize) -> usize {
+        let n = self.points.len();
+        let distance = |k: usize| square_distance(x, self.points[k]);
+        let mut here = (vertex, distance(vertex));
+        loop {
+            let beside = [(here.0 + 1) % n, (here.0 + n - 1) % n].map(|k| (k, distance(k)));
+            let next = if beside[0].1 <= beside[1].1 { beside[0] } else { beside[1] };
+            if next.1 >= here.1 {
+                return here.0;
+            }
+            here = next;
+        }
+    }
+
+    /// As [`Outline::nearest`] on the two segments at a vertex.
+    #[must_use]
+    pub fn around(&self, x: [f64; 2], vertex: usize) -> (usize, f64, [f64; 2], f64) {
+        let n = self.points.len();
         let mut best = (0, 0.0, [0.0; 2], 0.0);
         let mut least = f64::MAX;
         for k in [(vertex + n - 1) % n, vertex] {
@@ -83,6 +105,10 @@ impl Outline {
         }
         best
     }
+}
+
+fn square_distance(a: [f64; 2], b: [f64; 2]) -> f64 {
+    (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1])
 }
 
 fn segment_normal(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {

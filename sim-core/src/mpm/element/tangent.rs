@@ -10,7 +10,7 @@ use super::{Inverted, LEAST_STEP_JACOBIAN, Law};
 use crate::mpm::body::{Body, Points};
 use crate::mpm::constitutive::{advance, increment};
 use crate::mpm::plane::{Mat2, Stress};
-use crate::mpm::real::Dual;
+use crate::mpm::real::{Dual, Real};
 use crate::mpm::skyline::Skyline;
 
 /// As [`internal_force`](super::internal_force), and adds `factor` times the tangent to `matrix`.
@@ -75,7 +75,12 @@ fn by_cell<const N: usize, const M: usize>(
             let seen =
                 if law.mean_dilatation { step.scaled((after / before / jacobian).sqrt()) } else { step };
             let strain = increment(variable(seen), law.kinematics);
-            let update = advance(&law.material, body.points.stress[p], body.points.plastic[p], &strain);
+            let update = advance(
+                &law.material,
+                body.points.stress[p].lift(),
+                Dual::constant(body.points.plastic[p]),
+                &strain,
+            );
             let s = Stress {
                 xx: update.stress.xx.re,
                 yy: update.stress.yy.re,

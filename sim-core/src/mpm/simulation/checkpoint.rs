@@ -6,10 +6,12 @@ use serde::{Deserialize, Serialize};
 use super::{Log, PlasticDiscs};
 use crate::SimError;
 use crate::mpm::contact::{Key, Wall};
+use crate::mpm::explicit::Memory;
+use crate::mpm::observe::network::Impulses;
 use crate::mpm::plane::{Mat2, Stress};
 use crate::mpm::world::{Effort, Energies, World};
 
-const MAGIC: &[u8; 8] = b"TAMPMPM1";
+const MAGIC: &[u8; 8] = b"TAMPMPM2";
 const DIGEST: usize = 32;
 
 #[derive(Serialize, Deserialize)]
@@ -32,6 +34,8 @@ struct Saved {
     energies: Energies,
     effort: Effort,
     time: f64,
+    memory: Memory,
+    network: Impulses,
     log: Log,
 }
 
@@ -61,6 +65,8 @@ pub(super) fn save(run: &PlasticDiscs) -> Vec<u8> {
         energies: world.energies,
         effort: world.effort,
         time: world.time,
+        memory: world.memory.clone(),
+        network: world.network.clone(),
         log: run.log.clone(),
     };
     let payload = postcard::to_stdvec(&saved).expect("plain numbers can be written");
@@ -112,6 +118,8 @@ pub(super) fn load(run: &mut PlasticDiscs, bytes: &[u8]) -> Result<(), SimError>
     world.energies = saved.energies;
     world.effort = saved.effort;
     world.time = saved.time;
+    world.memory = saved.memory;
+    world.network = saved.network;
     run.log = saved.log;
     Ok(())
 }

@@ -33,7 +33,7 @@ fn record(run: &PlasticDiscs) -> Result<Row, Box<dyn std::error::Error>> {
     let mut row = run.log.states.last().map(State::row).transpose()?.unwrap_or_default();
     let status = if run.log.finished { run.log.status.as_str() } else { "running" };
     row.put("status", status).put("steps", i64::try_from(run.log.steps)?);
-    row.number("dt", if run.world.last_dt > 0.0 { run.world.last_dt } else { run.dt })?;
+    row.number("dt", if run.world.last_dt > 0.0 { run.world.last_dt } else { run.log.dt })?;
     row.number("sim_time", run.world.time)?;
     if let Some(state) = jamming_point(&run.log.states) {
         row.number("phi_c", state.phi)?.number("strain_c", state.strain)?.number("sigma_c", state.sigma)?;
