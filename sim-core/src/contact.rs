@@ -46,6 +46,17 @@ pub struct PairMotion<S: Space, L: Lane> {
     pub spin_difference: S::Spin<L>,
 }
 
+/// What a law makes of geometry and motion before it looks at the memory of the contact.
+#[derive(Clone, Copy)]
+pub struct Encounter<S: Space, L: Lane> {
+    /// u = d(ov)/dt at t_n − dt/2 [d/τ].
+    pub approach: L,
+    /// Part of the step in which the contact is closed [1].
+    pub share: L,
+    /// How the contact points slide past each other; zero for a law without spins.
+    pub tangent: tangential::Tangent<S, L>,
+}
+
 /// Forces of one contact.
 #[derive(Clone, Copy)]
 pub struct Response<S: Space, L: Lane> {

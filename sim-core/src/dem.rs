@@ -12,6 +12,7 @@ mod lists;
 mod motion;
 mod persist;
 mod probe;
+mod refresh;
 mod spheres;
 mod step;
 mod threads;

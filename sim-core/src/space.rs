@@ -32,12 +32,9 @@ pub trait Space: Copy + Send + Sync + 'static {
     fn spin_cross<L: Lane>(spin: Self::Spin<L>, arm: Self::Vector<L>) -> Self::Vector<L>;
     /// r × F.
     fn moment<L: Lane>(arm: Self::Vector<L>, force: Self::Vector<L>) -> Self::Spin<L>;
-    /// Turns a tangential vector about the contact normal by the angle (ω·n) dt, exact to second order; in the plane
-    /// there is no such turn.
-    fn twist<L: Lane>(
-        tangent: Self::Vector<L>,
-        normal: Self::Vector<L>,
-        spin: Self::Spin<L>,
-        dt: L,
-    ) -> Self::Vector<L>;
+    /// Angle by which a contact turns about its normal in a step, (ω·n) dt; zero in the plane, where no spin does that.
+    fn turn<L: Lane>(normal: Self::Vector<L>, spin: Self::Spin<L>, dt: L) -> L;
+    /// Turns a tangential vector about the contact normal by an angle, exact to second order; in the plane there is
+    /// no such turn.
+    fn twist<L: Lane>(tangent: Self::Vector<L>, normal: Self::Vector<L>, angle: L) -> Self::Vector<L>;
 }

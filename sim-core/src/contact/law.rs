@@ -5,7 +5,7 @@ use super::damping::Damping;
 use super::normal::Normal;
 use super::rolling::Rolling;
 use super::tangential::{Tangent, Tangential};
-use super::{PairGeometry, PairMotion, Response};
+use super::{Encounter, PairGeometry, PairMotion, Response};
 use crate::lane::{GROUP, Lane};
 use crate::space::{Space, Vector};
 
@@ -50,17 +50,41 @@ pub trait ContactLaw<S: Space>: Copy + Send + Sync + 'static {
 
     /// Largest gap at which the pair interacts [d].
     fn range(&self) -> f64;
-    /// Forces of one contact (or one group of them), updating its memory.
+    /// How one contact (or one group of them) moves; needs no memory.
+    fn encounter<L: Lane>(
+        &self,
+        geometry: &PairGeometry<S, L>,
+        motion: &PairMotion<S, L>,
+        dt: L,
+    ) -> Encounter<S, L>;
+    /// Its forces, updating its memory.
     ///
     /// # Safety
     /// `memory` points to [`ContactLaw::SLOTS`] slots of a group at the first lane.
+    unsafe fn forces<L: Lane>(
+        &self,
+        geometry: &PairGeometry<S, L>,
+        encounter: &Encounter<S, L>,
+        spin_difference: S::Spin<L>,
+        dt: L,
+        memory: *mut f64,
+    ) -> Response<S, L>;
+    /// Both in one.
+    ///
+    /// # Safety
+    /// As for [`ContactLaw::forces`].
+    #[inline(always)]
     unsafe fn evaluate<L: Lane>(
         &self,
         geometry: &PairGeometry<S, L>,
         motion: &PairMotion<S, L>,
         dt: L,
         memory: *mut f64,
-    ) -> Response<S, L>;
+    ) -> Response<S, L> {
+        let encounter = self.encounter(geometry, motion, dt);
+        // SAFETY: the caller vouches for the slots.
+        unsafe { self.forces(geometry, &encounter, motion.spin_difference, dt, memory) }
+    }
     /// Memory of an open contact, slot by slot.
     fn vacant(slot: usize) -> f64;
     /// For the time step.
@@ -92,13 +116,12 @@ where
     }
 
     #[inline(always)]
-    unsafe fn evaluate<L: Lane>(
+    fn encounter<L: Lane>(
         &self,
         geometry: &PairGeometry<S, L>,
         motion: &PairMotion<S, L>,
         dt: L,
-        memory: *mut f64,
-    ) -> Response<S, L> {
+    ) -> Encounter<S, L> {
         let half = L::splat(0.5);
         let zero = L::splat(0.0);
         let normal = geometry.normal;
@@ -111,28 +134,47 @@ where
         let approach = half_dt.mul(across.dot(normal_rate)).sub(opening);
 
         let overlap = geometry.overlap;
-        let closed = zero.less(overlap);
-        let share = L::splat(1.0).keep(closed);
+        let share = L::splat(1.0).keep(zero.less(overlap));
         let share = if D::JUMPS || A::JUMPS { share_of_step(overlap, approach, dt, share) } else { share };
-        let active = zero.less(share);
 
-        let elastic = self.normal.elastic(overlap);
-        // SAFETY: the caller vouches for the slots; so below.
-        let viscous = unsafe { self.damping.viscous(approach, geometry.root_mass, share, active, memory) };
-        let attraction = self.attraction.force(overlap, share);
-        let normal_force = self.damping.repulsion(elastic, viscous).sub(attraction);
-
-        let tangential = if T::NEEDS_SPIN {
+        let tangent = if T::NEEDS_SPIN {
             let normal_between = normal.sub_scaled(half_dt, normal_rate);
             // Lever arms reach the middle of the overlap: R − ov/2, with the overlap of t_n − dt/2.
             let quarter = half.mul(half_dt.neg_mul_add(approach, overlap));
             let rim = motion.rim.sub_scaled(quarter, motion.spin_sum);
             let slip = motion.velocity.add_scaled(approach, normal_between);
             let slip = slip.add_scaled(L::splat(-1.0), S::spin_cross(rim, normal_between));
-            let tangent = Tangent { slip, normal_rate, mean_spin: motion.spin_sum.scale(half) };
+            Tangent { slip, normal_rate, turn: S::turn(normal, motion.spin_sum.scale(half), dt) }
+        } else {
+            Tangent { slip: S::Vector::zero(), normal_rate: S::Vector::zero(), turn: zero }
+        };
+        Encounter { approach, share, tangent }
+    }
+
+    #[inline(always)]
+    unsafe fn forces<L: Lane>(
+        &self,
+        geometry: &PairGeometry<S, L>,
+        encounter: &Encounter<S, L>,
+        spin_difference: S::Spin<L>,
+        dt: L,
+        memory: *mut f64,
+    ) -> Response<S, L> {
+        let PairGeometry { normal, overlap, root_mass, .. } = *geometry;
+        let Encounter { approach, share, tangent } = encounter;
+        let (approach, share) = (*approach, *share);
+        let active = L::splat(0.0).less(share);
+
+        let elastic = self.normal.elastic(overlap);
+        // SAFETY: the caller vouches for the slots; so below.
+        let viscous = unsafe { self.damping.viscous(approach, root_mass, share, active, memory) };
+        let attraction = self.attraction.force(overlap, share);
+        let normal_force = self.damping.repulsion(elastic, viscous).sub(attraction);
+
+        let tangential = if T::NEEDS_SPIN {
             // SAFETY: see above.
             unsafe {
-                self.tangential.force(geometry, &tangent, elastic, active, dt, memory.add(D::SLOTS * GROUP))
+                self.tangential.force(normal, tangent, elastic, active, dt, memory.add(D::SLOTS * GROUP))
             }
         } else {
             S::Vector::zero()
@@ -141,7 +183,7 @@ where
             // SAFETY: see above.
             unsafe {
                 self.rolling.moment(
-                    motion.spin_difference,
+                    spin_difference,
                     elastic,
                     active,
                     dt,

@@ -6,7 +6,6 @@ mod frictionless;
 pub use coulomb_spring::CoulombSpring;
 pub use frictionless::Frictionless;
 
-use super::PairGeometry;
 use crate::lane::Lane;
 use crate::space::Space;
 
@@ -17,8 +16,8 @@ pub struct Tangent<S: Space, L: Lane> {
     pub slip: S::Vector<L>,
     /// dn/dt: rate at which the normal turns [1/τ].
     pub normal_rate: S::Vector<L>,
-    /// Mean spin of the two bodies [1/τ].
-    pub mean_spin: S::Spin<L>,
+    /// (ω·n) dt with the mean spin of the two bodies: angle by which the contact turns about its normal [1].
+    pub turn: L,
 }
 
 /// A tangential law.
@@ -30,13 +29,14 @@ pub trait Tangential<S: Space>: Copy + Send + Sync + 'static {
     /// Part of the kernel name.
     const NAME: &'static str;
 
-    /// Tangential force on a, with `elastic` the elastic normal force and `active` whether the contact is closed.
+    /// Tangential force on a of a contact with this `normal`, with `elastic` the elastic normal force and `active`
+    /// whether the contact is closed.
     ///
     /// # Safety
     /// `memory` points to [`Tangential::SLOTS`] slots of a group at the first lane.
     unsafe fn force<L: Lane>(
         &self,
-        geometry: &PairGeometry<S, L>,
+        normal: S::Vector<L>,
         tangent: &Tangent<S, L>,
         elastic: L,
         active: L::Mask,

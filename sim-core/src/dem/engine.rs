@@ -54,6 +54,12 @@ pub(super) struct Lists {
     pub strain_budget: f64,
     /// Largest share of a budget that may be used up.
     pub used: f64,
+    /// Time for which a particle of steady speed keeps within its budget [τ].
+    pub horizon: f64,
+    /// Distance a particle may have gone since the near pairs were found, less budgets [d].
+    pub margin: f64,
+    /// Whether a refresh must come before the next step.
+    pub due: bool,
     pub cells: CellList,
     pub rebuilds: u64,
     pub refreshes: u64,

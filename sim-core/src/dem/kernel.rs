@@ -1,58 +1,22 @@
-//! The hot loops: contacts of a chunk, motion of a chunk. Written once; compiled for each path.
+//! The hot loops: contacts of a chunk. Written once; compiled for each path.
+
+mod pair;
+mod path;
+mod wall;
 
 use std::marker::PhantomData;
 use std::mem::MaybeUninit;
 
+pub use pair::Evaluated;
+use pair::{Meeting, Moving};
+pub use path::Path;
+
 use crate::boundary::Boundary;
-use crate::contact::{ContactLaw, PairGeometry, PairMotion, Response};
+use crate::contact::ContactLaw;
 use crate::control::ServoWalls;
-use crate::lane::{GROUP, Lane, OPPOSITE, OTHER, SAME};
-use crate::space::{Space, Vector};
+use crate::lane::{GROUP, Lane};
+use crate::space::Space;
 use crate::state::{Body, Chunk, ContactList, Force, Grains};
-
-/// Which compiled copy of the hot loops runs; all give the same bits.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Path {
-    /// One contact at a time.
-    Plain,
-    /// One contact at a time, fused multiply-add in hardware.
-    #[cfg(target_arch = "x86_64")]
-    PlainFma,
-    /// Four contacts at a time.
-    #[cfg(target_arch = "x86_64")]
-    Avx2,
-}
-
-impl Path {
-    /// The fastest path of this machine, or its plain one.
-    #[must_use]
-    pub fn choose(choice: crate::KernelChoice) -> Self {
-        #[cfg(target_arch = "x86_64")]
-        {
-            let fma = std::arch::is_x86_feature_detected!("fma");
-            if choice == crate::KernelChoice::Auto && fma && std::arch::is_x86_feature_detected!("avx2") {
-                return Self::Avx2;
-            }
-            if fma {
-                return Self::PlainFma;
-            }
-        }
-        let _ = choice;
-        Self::Plain
-    }
-
-    /// Part of the kernel name.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Plain => "scalar",
-            #[cfg(target_arch = "x86_64")]
-            Self::PlainFma => "scalar",
-            #[cfg(target_arch = "x86_64")]
-            Self::Avx2 => "avx2",
-        }
-    }
-}
 
 /// Everything the force pass of a chunk reads, and where it writes.
 pub struct Pass<'a, S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
@@ -78,9 +42,8 @@ pub struct Pass<'a, S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
 
 /// Where the constants of a contact lie.
 #[inline(always)]
-unsafe fn constants<G: Grains>(list: &ContactList, group: usize, lane: usize) -> *const f64 {
-    // SAFETY: the caller names a contact of the list.
-    unsafe { list.constants.as_ptr().add(if G::CONSTANTS == 0 { 0 } else { group * 3 * GROUP + lane }) }
+fn constants<G: Grains>(rows: *const f64, group: usize, lane: usize) -> *const f64 {
+    rows.wrapping_add(if G::CONSTANTS == 0 { 0 } else { group * 3 * GROUP + lane })
 }
 
 /// The constants of one pair in the rows of a group, lane 0.
@@ -92,279 +55,98 @@ pub fn constants_of<G: Grains>(grains: &G, a: u32, b: u32) -> [f64; 3 * GROUP] {
     rows
 }
 
-/// Groups whose meetings are worked out before the law is applied to any of them. The chain of dependent operations
-/// from the positions of a group to its forces fills the reorder buffer of a core; cut in two through a small buffer
-/// in the first-level cache, several groups are in flight.
+/// Groups that go through one part of the work before any of them goes on to the next. The chain of dependent
+/// operations from the positions of a group to its forces is several times as long as the reorder buffer of a core;
+/// cut in three through small buffers in the first-level cache, several groups are in flight.
 const BATCH: usize = 16;
 
-/// A contact or group of contacts before the law.
+/// Where the forces on b of the contacts of a list go.
 #[derive(Clone, Copy)]
-struct Meeting<S: Space, L: Lane> {
-    separation: S::Vector<L>,
-    geometry: PairGeometry<S, L>,
-    motion: PairMotion<S, L>,
-}
-
-/// One contact or group of contacts: geometry and forces.
-pub struct Evaluated<S: Space, L: Lane> {
-    /// Unit normal from a to b.
-    pub normal: S::Vector<L>,
-    /// Vector from a to b, nearest image [d].
-    pub separation: S::Vector<L>,
-    /// Overlap [d].
-    pub overlap: L,
-    /// Parts of the force.
-    pub response: Response<S, L>,
-    /// Force on a [k_n d].
-    pub force: S::Vector<L>,
-    /// Torque on a [k_n d²].
-    pub torque_a: S::Spin<L>,
-    /// Torque on b [k_n d²].
-    pub torque_b: S::Spin<L>,
+struct Targets {
+    forces: *mut Force,
+    /// Indices of the first group.
+    at: *const u32,
+    /// From one group to the next.
+    stride: usize,
 }
 
 impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C> {
-    /// Pair contacts a–b.
+    /// The contacts of a list: whole groups in batches, what is left one by one.
     ///
     /// # Safety
-    /// `a`, `b` point to `L::WIDTH` indices of bodies, `memory` to the slots and `constants` to the constants of these
-    /// contacts.
+    /// The list holds valid indices and memory for its groups; the forces of its particles a and those of `targets`
+    /// are writable and no other thread touches them.
     #[inline(always)]
-    pub unsafe fn pair<L: Lane>(
-        &self,
-        a: *const u32,
-        b: *const u32,
-        memory: *mut f64,
-        constants: *const f64,
-    ) -> Evaluated<S, L> {
-        // SAFETY: the caller vouches.
-        unsafe { self.respond(&self.meet::<L>(a, b, constants), memory) }
-    }
-
-    /// First half of a pair contact: where the bodies are and how they move.
-    ///
-    /// # Safety
-    /// `a`, `b` point to `L::WIDTH` indices of bodies, `constants` to the constants of these contacts.
-    #[inline(always)]
-    unsafe fn meet<L: Lane>(&self, a: *const u32, b: *const u32, constants: *const f64) -> Meeting<S, L> {
-        // SAFETY: the caller vouches for the indices; so throughout.
-        let separation = S::vector(unsafe { L::difference::<0>(self.bodies, a, b) });
-        let velocity = S::vector(unsafe { L::difference::<1>(self.bodies, a, b) });
-        let (separation, velocity) = self.boundary.nearest(separation, velocity);
-        let distance = separation.dot(separation).sqrt();
-        let inverse_distance = L::splat(1.0).div(distance);
-        let normal = separation.scale(inverse_distance);
-        // SAFETY: see above.
-        let [radius_a, radius_b, root_mass] = unsafe { self.grains.pair::<L>(constants) };
-        let overlap = radius_a.add(radius_b).sub(distance);
-        let geometry = PairGeometry { normal, overlap, inverse_distance, radius_a, radius_b, root_mass };
-
-        let zero: S::Spin<L> = S::Spin::zero();
-        let mut motion: PairMotion<S, L> =
-            PairMotion { velocity, rim: zero, spin_sum: zero, spin_difference: zero };
-        if C::NEEDS_SPIN {
-            // SAFETY: see above.
-            unsafe {
-                if G::EQUAL {
-                    motion.spin_sum = S::spin(L::sum::<2>(self.bodies, a, b));
-                    motion.rim = motion.spin_sum.scale(radius_a);
-                    if C::ROLLS {
-                        motion.spin_difference = S::spin(L::difference::<2>(self.bodies, a, b));
-                    }
-                } else {
-                    let of_a: S::Spin<L> = S::spin(L::record::<2>(self.bodies, a));
-                    let of_b: S::Spin<L> = S::spin(L::record::<2>(self.bodies, b));
-                    motion.spin_sum = of_a.add(of_b);
-                    motion.rim = of_a.scale(radius_a).add_scaled(radius_b, of_b);
-                    if C::ROLLS {
-                        motion.spin_difference = of_b.add_scaled(L::splat(-1.0), of_a);
-                    }
-                }
-            }
-        }
-        Meeting { separation, geometry, motion }
-    }
-
-    /// Second half of a pair contact: the law.
-    ///
-    /// # Safety
-    /// `memory` points to the slots of these contacts.
-    #[inline(always)]
-    unsafe fn respond<L: Lane>(&self, meeting: &Meeting<S, L>, memory: *mut f64) -> Evaluated<S, L> {
-        let Meeting { separation, geometry, motion } = meeting;
-        let separation = *separation;
-        let PairGeometry { normal, overlap, radius_a, radius_b, .. } = *geometry;
-        let zero: S::Spin<L> = S::Spin::zero();
-        // SAFETY: the caller vouches for the slots.
-        let response = unsafe { self.law.evaluate(geometry, motion, L::splat(self.dt), memory) };
-        let force = response.tangential.sub_scaled(response.normal, normal);
-        let (mut torque_a, mut torque_b) = (zero, zero);
-        if C::NEEDS_SPIN {
-            let half = L::splat(0.5);
-            let couple = S::moment(normal, response.tangential);
-            torque_a = couple.scale(half.neg_mul_add(overlap, radius_a));
-            torque_b = if G::EQUAL { torque_a } else { couple.scale(half.neg_mul_add(overlap, radius_b)) };
-            if C::ROLLS {
-                torque_a = torque_a.add(response.rolling);
-                torque_b = torque_b.add_scaled(L::splat(-1.0), response.rolling);
-            }
-        }
-        Evaluated { normal, separation, overlap, response, force, torque_a, torque_b }
-    }
-
-    /// Contacts with one wall (a particles; the wall has no index).
-    ///
-    /// # Safety
-    /// `a` points to `L::WIDTH` indices of bodies, `memory` to the slots of these contacts.
-    #[inline(always)]
-    pub unsafe fn wall<L: Lane>(
-        &self,
-        walls: &ServoWalls,
-        wall: usize,
-        a: *const u32,
-        memory: *mut f64,
-    ) -> Evaluated<S, L> {
-        let axis = ServoWalls::axis(wall);
-        let outward = L::splat(ServoWalls::outward(wall));
-        // SAFETY: the caller vouches for the indices; so throughout.
-        let (position, own) = unsafe { (L::record::<0>(self.bodies, a), L::record::<1>(self.bodies, a)) };
-        let zero = L::splat(0.0);
-        let mut normal = [zero; 3];
-        normal[axis] = outward;
-        let mut velocity = [zero.sub(own[0]), zero.sub(own[1]), zero.sub(own[2])];
-        velocity[axis] = L::splat(walls.velocity[wall]).sub(own[axis]);
-        let (normal, velocity) = (S::vector(normal), S::vector(velocity));
-        let distance = L::splat(walls.position[wall]).sub(position[axis]).mul(outward);
-        // SAFETY: see above.
-        let radius = unsafe { self.grains.radii::<L>(a) };
-        let overlap = radius.sub(distance);
-        // SAFETY: see above.
-        let root_mass = unsafe { self.grains.root_wall_mass::<L>(a) };
-        let geometry = PairGeometry {
-            normal,
-            overlap,
-            inverse_distance: zero,
-            radius_a: radius,
-            radius_b: zero,
-            root_mass,
-        };
-        let none: S::Spin<L> = S::Spin::zero();
-        let mut motion: PairMotion<S, L> =
-            PairMotion { velocity, rim: none, spin_sum: none, spin_difference: none };
-        if C::NEEDS_SPIN {
-            // SAFETY: see above.
-            motion.spin_sum = S::spin(unsafe { L::record::<2>(self.bodies, a) });
-            motion.rim = motion.spin_sum.scale(radius);
-            motion.spin_difference = none.add_scaled(L::splat(-1.0), motion.spin_sum);
-        }
-        // SAFETY: see above.
-        let response = unsafe { self.wall_law.evaluate(&geometry, &motion, L::splat(self.dt), memory) };
-        let force = response.tangential.sub_scaled(response.normal, normal);
-        let mut torque_a = none;
-        if C::NEEDS_SPIN {
-            let arm = L::splat(0.5).neg_mul_add(overlap, radius);
-            torque_a = S::moment(normal, response.tangential).scale(arm);
-            if C::ROLLS {
-                torque_a = torque_a.add(response.rolling);
-            }
-        }
-        Evaluated {
-            normal,
-            separation: normal.scale(distance),
-            overlap,
-            response,
-            force,
-            torque_a,
-            torque_b: none,
-        }
-    }
-
-    /// Adds the forces of pair contacts; those of b go to `forces_b` at `b_target`.
-    ///
-    /// # Safety
-    /// As for [`Pass::pair`]; the forces are writable and no other thread touches them.
-    #[inline(always)]
-    unsafe fn apply<L: Lane>(
-        &self,
-        a: *const u32,
-        forces_b: *mut Force,
-        b_target: *const u32,
-        contact: &Evaluated<S, L>,
-    ) {
-        let force = S::vector_record(contact.force);
-        // SAFETY: the caller vouches for the indices; so below.
-        unsafe { L::scatter_pair::<0, OPPOSITE>(self.forces, a, forces_b, b_target, force, force) };
-        if C::NEEDS_SPIN || B::DEFORMS {
-            let mut torque_a = S::spin_record(contact.torque_a);
-            if B::DEFORMS {
-                const { assert!(!B::DEFORMS || S::DIMENSION == 2, "only the plane has room for the virial") };
-                // A planar torque leaves the first two numbers of its row free: they take F_α r_α of the contacts a
-                // particle owns. Sums per particle, unlike sums per list, do not depend on what else is listed.
-                let separation = S::vector_record(contact.separation);
-                torque_a[0] = L::splat(0.0).sub(force[0].mul(separation[0]));
-                torque_a[1] = L::splat(0.0).sub(force[1].mul(separation[1]));
-            }
-            // SAFETY: see above.
-            unsafe {
-                if G::EQUAL && !C::ROLLS && !B::DEFORMS {
-                    L::scatter_pair::<1, SAME>(self.forces, a, forces_b, b_target, torque_a, torque_a);
-                } else {
-                    let torque_b = S::spin_record(contact.torque_b);
-                    L::scatter_pair::<1, OTHER>(self.forces, a, forces_b, b_target, torque_a, torque_b);
-                }
-            }
-        }
-    }
-
-    /// Inner contacts of a chunk.
-    #[inline(always)]
-    unsafe fn inner<L: Lane>(&self, list: &mut ContactList, group: usize, lane: usize) {
-        let indices = list.indices[group].as_ptr();
-        // SAFETY: the list holds valid indices of this chunk and memory for its groups.
-        unsafe {
-            let (a, b) = (indices.add(lane), indices.add(GROUP + lane));
-            let memory = list.memory.as_mut_ptr().add(group * C::SLOTS * GROUP + lane);
-            let constants = constants::<G>(list, group, lane);
-            let contact = self.pair::<L>(a, b, memory, constants);
-            self.apply::<L>(a, self.forces, b, &contact);
-        }
-    }
-
-    /// The first `groups` groups of the inner contacts, in batches.
-    #[inline(always)]
-    unsafe fn inner_batches<L: Lane>(&self, list: &mut ContactList, groups: usize) {
-        let mut meetings = [const { MaybeUninit::<Meeting<S, L>>::uninit() }; BATCH];
+    unsafe fn contacts<L: Lane>(&self, list: &mut ContactList, targets: Targets) {
         let (indices, memory) = (list.indices.as_ptr().cast::<u32>(), list.memory.as_mut_ptr());
+        let rows = list.constants.as_ptr();
+        let groups = if L::WIDTH == GROUP { list.count / GROUP } else { 0 };
         let mut first = 0;
         while first < groups {
             let count = if groups - first < BATCH { groups - first } else { BATCH };
+            // SAFETY: these groups are full.
+            unsafe { self.batch::<L>(indices, memory, rows, targets, first, count) };
+            first += count;
+        }
+        for k in groups * GROUP..list.count {
+            let (group, lane) = (k / GROUP, k % GROUP);
+            // SAFETY: contact k is in the list.
+            unsafe {
+                let a = indices.add(group * 2 * GROUP + lane);
+                let memory = memory.add(group * C::SLOTS * GROUP + lane);
+                let contact =
+                    self.pair::<f64>(a, a.add(GROUP), memory, constants::<G>(rows, group, lane));
+                let target = targets.at.add(group * targets.stride + lane);
+                self.apply::<f64>(a, targets.forces, target, &contact);
+            }
+        }
+    }
+
+    /// Groups `first..first + count`, part by part.
+    ///
+    /// # Safety
+    /// As for `contacts`; the groups are full and at most [`BATCH`].
+    #[inline(always)]
+    unsafe fn batch<L: Lane>(
+        &self,
+        indices: *const u32,
+        memory: *mut f64,
+        rows: *const f64,
+        targets: Targets,
+        first: usize,
+        count: usize,
+    ) {
+        let mut meetings = [const { MaybeUninit::<Meeting<S, L>>::uninit() }; BATCH];
+        let mut moving = [const { MaybeUninit::<Moving<S, L>>::uninit() }; BATCH];
+        let (meetings, moving) = (meetings.as_mut_ptr(), moving.as_mut_ptr());
+        // SAFETY: the caller vouches for the lists; the buffers are written before they are read.
+        unsafe {
             let mut k = 0;
             while k < count {
-                // SAFETY: the list holds valid indices of this chunk and memory for its groups; the buffer is written
-                // before it is read.
-                unsafe {
-                    let a = indices.add((first + k) * 2 * GROUP);
-                    let constants = constants::<G>(list, first + k, 0);
-                    meetings.as_mut_ptr().add(k).write(MaybeUninit::new(self.meet::<L>(
-                        a,
-                        a.add(GROUP),
-                        constants,
-                    )));
-                }
+                let a = indices.add((first + k) * 2 * GROUP);
+                let constants = constants::<G>(rows, first + k, 0);
+                meetings.add(k).write(MaybeUninit::new(self.meet::<L>(a, a.add(GROUP), constants)));
                 k += 1;
             }
             k = 0;
             while k < count {
-                // SAFETY: as above.
-                unsafe {
-                    let a = indices.add((first + k) * 2 * GROUP);
-                    let meeting = (*meetings.as_ptr().add(k)).assume_init_ref();
-                    let contact = self.respond::<L>(meeting, memory.add((first + k) * C::SLOTS * GROUP));
-                    self.apply::<L>(a, self.forces, a.add(GROUP), &contact);
-                }
+                let meeting = (*meetings.add(k)).assume_init_ref();
+                let constants = constants::<G>(rows, first + k, 0);
+                moving.add(k).write(MaybeUninit::new(self.move_on::<L>(meeting, constants)));
                 k += 1;
             }
-            first += count;
+            k = 0;
+            while k < count {
+                let a = indices.add((first + k) * 2 * GROUP);
+                let (meeting, moving) =
+                    ((*meetings.add(k)).assume_init_ref(), (*moving.add(k)).assume_init_ref());
+                let memory = memory.add((first + k) * C::SLOTS * GROUP);
+                let constants = constants::<G>(rows, first + k, 0);
+                let contact = self.respond::<L>(meeting, moving, memory, constants);
+                let target = targets.at.add((first + k) * targets.stride);
+                self.apply::<L>(a, targets.forces, target, &contact);
+                k += 1;
+            }
         }
     }
 
@@ -375,24 +157,22 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// touches them; bodies are not written meanwhile.
     #[inline(always)]
     unsafe fn chunk<L: Lane>(&self, chunk: &mut Chunk) {
-        let whole = |count: usize| if L::WIDTH == GROUP { count / GROUP } else { 0 };
-
-        let groups = whole(chunk.inner.count);
-        // SAFETY: these groups are full; so for every list below.
-        unsafe { self.inner_batches::<L>(&mut chunk.inner, groups) };
-        for k in groups * GROUP..chunk.inner.count {
-            // SAFETY: pair k is in the list.
-            unsafe { self.inner::<f64>(&mut chunk.inner, k / GROUP, k % GROUP) };
-        }
+        let inner = Targets {
+            forces: self.forces,
+            at: chunk.inner.indices.as_ptr().cast::<u32>().wrapping_add(GROUP),
+            stride: 2 * GROUP,
+        };
+        // SAFETY: the list holds valid indices of this chunk.
+        unsafe { self.contacts::<L>(&mut chunk.inner, inner) };
 
         if let Some(walls) = self.walls {
             for wall in 0..6 {
                 let list = &mut chunk.walls[wall];
                 let mut sum = 0.0;
-                let groups = whole(list.count);
+                let groups = if L::WIDTH == GROUP { list.count / GROUP } else { 0 };
                 for group in 0..groups {
                     let mut normal = [0.0; GROUP];
-                    // SAFETY: see above.
+                    // SAFETY: the group is full.
                     unsafe {
                         let contact = self.wall_contact::<L>(walls, wall, list, group, 0);
                         contact.store(normal.as_mut_ptr());
@@ -402,7 +182,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
                     }
                 }
                 for k in groups * GROUP..list.count {
-                    // SAFETY: see above.
+                    // SAFETY: contact k is in the list.
                     sum += unsafe { self.wall_contact::<f64>(walls, wall, list, k / GROUP, k % GROUP) };
                 }
                 chunk.wall_force[wall] = sum;
@@ -410,41 +190,16 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         }
 
         chunk.ghosts.forces.fill(Force::default());
-        let groups = whole(chunk.outer.count);
-        for group in 0..groups {
-            // SAFETY: see above.
-            unsafe { self.outer::<L>(chunk, group, 0) };
-        }
-        for k in groups * GROUP..chunk.outer.count {
-            // SAFETY: see above.
-            unsafe { self.outer::<f64>(chunk, k / GROUP, k % GROUP) };
-        }
+        let outer = Targets {
+            forces: chunk.ghosts.forces.as_mut_ptr(),
+            at: chunk.ghosts.targets.as_ptr().cast::<u32>(),
+            stride: GROUP,
+        };
+        // SAFETY: the list holds valid indices and there is a ghost for every b.
+        unsafe { self.contacts::<L>(&mut chunk.outer, outer) };
         if B::DEFORMS {
             // SAFETY: this thread owns the forces of the chunk.
             chunk.virial = unsafe { self.virial(chunk.start, chunk.end) };
-        }
-    }
-
-    /// One group of contacts with a wall: adds to the particles, returns the normal forces.
-    #[inline(always)]
-    unsafe fn wall_contact<L: Lane>(
-        &self,
-        walls: &ServoWalls,
-        wall: usize,
-        list: &mut ContactList,
-        group: usize,
-        lane: usize,
-    ) -> L {
-        // SAFETY: the list holds valid indices of this chunk and memory for its groups.
-        unsafe {
-            let a = list.indices[group].as_ptr().add(lane);
-            let memory = list.memory.as_mut_ptr().add(group * C::SLOTS * GROUP + lane);
-            let contact = self.wall::<L>(walls, wall, a, memory);
-            L::scatter::<0>(self.forces, a, S::vector_record(contact.force));
-            if C::NEEDS_SPIN {
-                L::scatter::<1>(self.forces, a, S::spin_record(contact.torque_a));
-            }
-            contact.response.normal
         }
     }
 
@@ -462,22 +217,6 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         }
         let sum = |axis: usize| (parts[0][axis] + parts[1][axis]) + (parts[2][axis] + parts[3][axis]);
         [sum(0), sum(1), 0.0]
-    }
-
-    /// One group of contacts with later chunks.
-    #[inline(always)]
-    unsafe fn outer<L: Lane>(&self, chunk: &mut Chunk, group: usize, lane: usize) {
-        let indices = chunk.outer.indices[group].as_ptr();
-        let targets = chunk.ghosts.targets[group].as_ptr();
-        let ghosts = chunk.ghosts.forces.as_mut_ptr();
-        // SAFETY: the list holds valid indices, memory for its groups and a ghost for every b.
-        unsafe {
-            let (a, b) = (indices.add(lane), indices.add(GROUP + lane));
-            let memory = chunk.outer.memory.as_mut_ptr().add(group * C::SLOTS * GROUP + lane);
-            let constants = constants::<G>(&chunk.outer, group, lane);
-            let contact = self.pair::<L>(a, b, memory, constants);
-            self.apply::<L>(a, ghosts, targets.add(lane), &contact);
-        }
     }
 
     /// The force pass of one chunk on a path.

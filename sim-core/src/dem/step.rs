@@ -4,7 +4,7 @@ use super::Fault;
 use super::engine::Dem;
 use super::lists::{SORT_EVERY, speed};
 use super::motion::{Deformation, advance, advance_with_space};
-use super::threads::{Barrier, Shared};
+use super::threads::{Crew, Shared};
 use crate::boundary::Boundary;
 use crate::contact::ContactLaw;
 use crate::space::Space;
@@ -19,22 +19,79 @@ const FASTEST: f64 = 0.25;
 impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     /// Does `steps` steps.
     pub(super) fn advance_steps(&mut self, steps: u64) -> Result<(), Fault> {
-        let threads = self.threads.min(self.chunks.len());
-        if threads <= 1 {
-            for _ in 0..steps {
-                for chunk in 0..self.chunks.len() {
-                    // SAFETY: this thread has the system to itself.
-                    unsafe { Self::force_phase(&raw mut *self, chunk) };
+        let chunks = self.chunks.len();
+        let threads = self.threads.min(chunks);
+        let crew = Crew::new(threads, chunks);
+        let fault = std::sync::Mutex::new(None);
+        let shared = Shared::new(&raw mut *self);
+        let work = || {
+            let _poison = crew.poison_on_panic();
+            for round in 1..=steps {
+                // SAFETY: all threads of the crew do the same; the crew deals out the chunks.
+                unsafe { Self::step_together(shared.get(), &crew, round, &fault) };
+                if crew.stopped() {
+                    break;
                 }
-                for chunk in 0..self.chunks.len() {
-                    // SAFETY: as above.
-                    unsafe { Self::motion_phase(&raw mut *self, chunk) };
-                }
-                self.serial_phase()?;
             }
-            return Ok(());
+        };
+        if crew.is_alone() {
+            work();
+        } else {
+            std::thread::scope(|scope| {
+                for _ in 1..threads {
+                    scope.spawn(work);
+                }
+                work();
+            });
         }
-        self.advance_together(steps, threads)
+        fault.into_inner().expect("no thread panics with the fault in hand").map_or(Ok(()), Err)
+    }
+
+    /// One step of a crew.
+    ///
+    /// A chunk may move as soon as the forces of all chunks up to it are done: later chunks neither add to its forces
+    /// nor look at its bodies, because the lower index owns a contact. A lone thread therefore moves every chunk while
+    /// it is still in the cache; several do the forces first and fill the gaps at the end with motion.
+    ///
+    /// # Safety
+    /// All threads of the crew call this with the same arguments, and nobody else uses the system.
+    unsafe fn step_together(
+        dem: *mut Self,
+        crew: &Crew,
+        round: u64,
+        fault: &std::sync::Mutex<Option<Fault>>,
+    ) {
+        // SAFETY: chunks are claimed once; whoever moves one has waited for the forces it depends on; the meetings
+        // separate steps and lists.
+        unsafe {
+            let chunks = (*dem).chunks.len();
+            let fused = crew.is_alone() && !B::DEFORMS;
+            while let Some(chunk) = crew.claim(0, chunks) {
+                Self::force_phase(dem, chunk);
+                if fused {
+                    Self::motion_phase(dem, chunk);
+                } else {
+                    crew.report(chunk, round);
+                }
+            }
+            let mut ready = 0;
+            while !fused && let Some(chunk) = crew.claim(1, chunks) {
+                // A deforming space moves by the virial of all chunks.
+                let needed = if B::DEFORMS { chunks } else { chunk + 1 };
+                crew.await_chunks(ready..needed, round);
+                ready = needed;
+                Self::motion_phase(dem, chunk);
+            }
+            crew.meet(|| {
+                if let Err(what) = (*dem).serial_phase() {
+                    *fault.lock().expect("no thread panics with the fault in hand") = Some(what);
+                    crew.stop();
+                }
+            });
+            if !crew.stopped() && (*dem).lists.due {
+                Self::refresh_together(dem, crew);
+            }
+        }
     }
 
     /// Phase 1: contact forces of one chunk.
@@ -56,7 +113,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     /// Phase 2: adds the ghosts of earlier chunks, then moves the particles of one chunk.
     ///
     /// # Safety
-    /// The force phase of all chunks is over; no other thread works on this chunk.
+    /// The force phases of this chunk and all before it are over (of all chunks, where space deforms); no other thread
+    /// works on this chunk.
     unsafe fn motion_phase(dem: *mut Self, chunk: usize) {
         // SAFETY: only bodies and forces of this chunk are written; ghosts are read.
         unsafe {
@@ -101,7 +159,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         }
     }
 
-    /// Phase 3, one thread: moves the walls, counts the step, looks after the lists.
+    /// Phase 3, one thread: moves the walls, counts the step, says whether the lists are due.
     fn serial_phase(&mut self) -> Result<(), Fault> {
         let dt = self.dt;
         let mut rush = self.chunks.iter().map(|chunk| chunk.rush).fold(0.0, f64::max) * 3.0_f64.sqrt();
@@ -133,7 +191,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         } else if self.lists.used + 0.5 * rush * dt >= 1.0 {
             // The half step: a pair still apart by half a step's travel already has a share of the step in contact.
             if rush.is_finite() {
-                self.refresh();
+                self.lists.due = true;
             } else {
                 self.look()?;
             }
@@ -192,48 +250,5 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             }
         }
         Ok(())
-    }
-
-    /// The loop on several threads: chunks are dealt out once, phases are separated by barriers.
-    fn advance_together(&mut self, steps: u64, threads: usize) -> Result<(), Fault> {
-        let barrier = Barrier::new(threads);
-        let chunks = self.chunks.len();
-        let shared = Shared::new(&raw mut *self);
-        let work = |thread: usize| -> Result<(), Fault> {
-            let _poison = barrier.poison_on_panic();
-            let mine = chunks * thread / threads..chunks * (thread + 1) / threads;
-            let mut outcome = Ok(());
-            for _ in 0..steps {
-                for chunk in mine.clone() {
-                    // SAFETY: chunks are dealt out without overlap; the barriers separate the phases.
-                    unsafe { Self::force_phase(shared.get(), chunk) };
-                }
-                barrier.wait();
-                for chunk in mine.clone() {
-                    // SAFETY: as above.
-                    unsafe { Self::motion_phase(shared.get(), chunk) };
-                }
-                barrier.wait();
-                if thread == 0 {
-                    // SAFETY: the other threads wait at the next barrier.
-                    outcome = unsafe { (*shared.get()).serial_phase() };
-                    if outcome.is_err() {
-                        barrier.stop();
-                    }
-                }
-                barrier.wait();
-                if barrier.stopped() {
-                    break;
-                }
-            }
-            outcome
-        };
-        std::thread::scope(|scope| {
-            for thread in 1..threads {
-                let work = &work;
-                scope.spawn(move || work(thread));
-            }
-            work(0)
-        })
     }
 }

@@ -1,21 +1,27 @@
-//! A barrier for threads that meet several thousand times a second, and a pointer they share.
+//! Threads that do one step after another together: who does which chunk, who has done what, and a barrier for
+//! meetings that happen several thousand times a second.
 
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 
 /// Rounds of busy waiting before the processor is offered to others.
 const SPINS: u32 = 2000;
 
-/// All threads wait until the last one has come.
-pub(super) struct Barrier {
+/// The threads of one system. Nothing here decides about results: chunks are the unit of work and of sums, whoever
+/// does them.
+pub(super) struct Crew {
     threads: usize,
     arrived: AtomicUsize,
     round: AtomicUsize,
     poisoned: AtomicBool,
     stopped: AtomicBool,
+    /// Next chunk to be claimed, one counter per kind of work.
+    next: [AtomicUsize; 2],
+    /// Round of work in which a chunk was last done.
+    done: Vec<AtomicU64>,
 }
 
-/// Poisons the barrier when its thread unwinds, so that the others do not wait for ever.
-pub(super) struct PoisonOnPanic<'a>(&'a Barrier);
+/// Poisons the crew when its thread unwinds, so that the others do not wait for ever.
+pub(super) struct PoisonOnPanic<'a>(&'a Crew);
 
 impl Drop for PoisonOnPanic<'_> {
     fn drop(&mut self) {
@@ -25,22 +31,35 @@ impl Drop for PoisonOnPanic<'_> {
     }
 }
 
-impl Barrier {
-    pub(super) fn new(threads: usize) -> Self {
+impl Crew {
+    /// A crew for a system of `chunks`.
+    pub(super) fn new(threads: usize, chunks: usize) -> Self {
         Self {
             threads,
             arrived: AtomicUsize::new(0),
             round: AtomicUsize::new(0),
             poisoned: AtomicBool::new(false),
             stopped: AtomicBool::new(false),
+            next: std::array::from_fn(|_| AtomicUsize::new(0)),
+            done: (0..chunks).map(|_| AtomicU64::new(0)).collect(),
         }
+    }
+
+    /// A crew of one, which never waits.
+    pub(super) fn alone() -> Self {
+        Self::new(1, 0)
+    }
+
+    /// Whether there is one thread only.
+    pub(super) fn is_alone(&self) -> bool {
+        self.threads == 1
     }
 
     pub(super) fn poison_on_panic(&self) -> PoisonOnPanic<'_> {
         PoisonOnPanic(self)
     }
 
-    /// Tells all threads to leave after the next meeting.
+    /// Tells all threads to leave after this meeting.
     pub(super) fn stop(&self) {
         self.stopped.store(true, Ordering::Release);
     }
@@ -49,15 +68,42 @@ impl Barrier {
         self.stopped.load(Ordering::Acquire)
     }
 
-    pub(super) fn wait(&self) {
+    /// A chunk that nobody has claimed for this kind of work since the last meeting, in ascending order.
+    pub(super) fn claim(&self, kind: usize, chunks: usize) -> Option<usize> {
+        let chunk = self.next[kind].fetch_add(1, Ordering::Relaxed);
+        (chunk < chunks).then_some(chunk)
+    }
+
+    /// Says that a chunk is done in this round of work (rounds ascend).
+    pub(super) fn report(&self, chunk: usize, round: u64) {
+        self.done[chunk].store(round, Ordering::Release);
+    }
+
+    /// Waits until `chunks` have been reported in this round.
+    pub(super) fn await_chunks(&self, chunks: std::ops::Range<usize>, round: u64) {
+        for chunk in chunks {
+            self.spin_while(|| self.done[chunk].load(Ordering::Acquire) != round);
+        }
+    }
+
+    /// All threads wait until the last one has come; that one does `alone` before anybody goes on.
+    pub(super) fn meet(&self, alone: impl FnOnce()) {
         let round = self.round.load(Ordering::Acquire);
         if self.arrived.fetch_add(1, Ordering::AcqRel) + 1 == self.threads {
+            for next in &self.next {
+                next.store(0, Ordering::Relaxed);
+            }
+            alone();
             self.arrived.store(0, Ordering::Relaxed);
             self.round.store(round.wrapping_add(1), Ordering::Release);
             return;
         }
+        self.spin_while(|| self.round.load(Ordering::Acquire) == round);
+    }
+
+    fn spin_while(&self, unready: impl Fn() -> bool) {
         let mut spins = 0;
-        while self.round.load(Ordering::Acquire) == round {
+        while unready() {
             assert!(!self.poisoned.load(Ordering::Acquire), "another thread of this simulation panicked");
             if spins < SPINS {
                 spins += 1;
@@ -90,17 +136,46 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nobody_passes_before_the_last_one_has_come() {
-        let barrier = Barrier::new(3);
-        let count = AtomicUsize::new(0);
+    fn nobody_passes_before_the_last_one_has_come_and_done_its_work() {
+        let crew = Crew::new(3, 0);
+        let (count, meetings) = (AtomicUsize::new(0), AtomicUsize::new(0));
         std::thread::scope(|scope| {
             for _ in 0..3 {
                 scope.spawn(|| {
                     for round in 1..=200 {
                         count.fetch_add(1, Ordering::AcqRel);
-                        barrier.wait();
+                        crew.meet(|| {
+                            meetings.fetch_add(1, Ordering::AcqRel);
+                        });
                         assert_eq!(count.load(Ordering::Acquire), 3 * round);
-                        barrier.wait();
+                        assert_eq!(meetings.load(Ordering::Acquire), round);
+                        crew.meet(|| {});
+                    }
+                });
+            }
+        });
+    }
+
+    #[test]
+    fn every_chunk_is_claimed_once_and_awaited_until_reported() {
+        let chunks = 5;
+        let crew = Crew::new(2, chunks);
+        let work: Vec<AtomicUsize> = (0..chunks).map(|_| AtomicUsize::new(0)).collect();
+        std::thread::scope(|scope| {
+            for _ in 0..2 {
+                scope.spawn(|| {
+                    for round in 1..=200_u64 {
+                        while let Some(chunk) = crew.claim(0, chunks) {
+                            work[chunk].fetch_add(1, Ordering::Relaxed);
+                            crew.report(chunk, round);
+                        }
+                        while let Some(chunk) = crew.claim(1, chunks) {
+                            crew.await_chunks(0..chunk + 1, round);
+                            for work in &work[..=chunk] {
+                                assert_eq!(work.load(Ordering::Relaxed) as u64, round);
+                            }
+                        }
+                        crew.meet(|| {});
                     }
                 });
             }

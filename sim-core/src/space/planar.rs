@@ -38,7 +38,11 @@ impl Space for Planar {
         V1([arm.0[1].neg_mul_add(force.0[0], arm.0[0].mul(force.0[1]))])
     }
     #[inline(always)]
-    fn twist<L: Lane>(tangent: V2<L>, _normal: V2<L>, _spin: V1<L>, _dt: L) -> V2<L> {
+    fn turn<L: Lane>(_: V2<L>, _: V1<L>, _: L) -> L {
+        L::splat(0.0)
+    }
+    #[inline(always)]
+    fn twist<L: Lane>(tangent: V2<L>, _: V2<L>, _: L) -> V2<L> {
         tangent
     }
 }

@@ -44,9 +44,12 @@ impl Space for Spatial {
         cross(arm, force)
     }
     #[inline(always)]
-    fn twist<L: Lane>(tangent: V3<L>, normal: V3<L>, spin: V3<L>, dt: L) -> V3<L> {
-        // θ = (ω·n) dt; t + θ n × t − θ²/2 t
-        let angle = spin.dot(normal).mul(dt);
+    fn turn<L: Lane>(normal: V3<L>, spin: V3<L>, dt: L) -> L {
+        spin.dot(normal).mul(dt)
+    }
+    #[inline(always)]
+    fn twist<L: Lane>(tangent: V3<L>, normal: V3<L>, angle: L) -> V3<L> {
+        // t + θ n × t − θ²/2 t
         let turned = tangent.add_scaled(angle, cross(normal, tangent));
         turned.sub_scaled(angle.mul(angle).mul(L::splat(0.5)), tangent)
     }

@@ -26,6 +26,8 @@ pub struct Ghosts {
     pub forces: Vec<Force>,
     /// Place in `particles` of b of every outer contact, in groups of four.
     pub targets: Vec<[u32; 4]>,
+    /// Whether they changed since the other chunks were told.
+    pub changed: bool,
 }
 
 /// One chunk: its particles are `start..end`.
@@ -55,6 +57,10 @@ pub struct Chunk {
     pub near: Vec<u32>,
     /// Largest |v component| / displacement budget in the last step [1/τ].
     pub rush: f64,
+    /// Whether a particle could leave the margin of its near pairs.
+    pub strayed: bool,
+    /// Scratch: the near pairs that may touch.
+    pub selected: Vec<(u32, u32)>,
     /// Storage for the next lists, swapped at a refresh.
     pub spare: [ContactList; 2],
 }
@@ -82,6 +88,7 @@ impl Chunk {
             + self.spare.iter().map(ContactList::bytes).sum::<usize>()
             + self.walls.iter().map(ContactList::bytes).sum::<usize>()
             + (self.near.capacity() + self.near_start.capacity()) * size_of::<u32>()
+            + self.selected.capacity() * size_of::<(u32, u32)>()
             + self.ghosts.forces.capacity() * size_of::<Force>()
             + (self.ghosts.particles.capacity() + self.ghosts.targets.capacity() * 4) * size_of::<u32>()
     }

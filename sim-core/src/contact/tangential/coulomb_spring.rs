@@ -6,7 +6,6 @@
 //! projected on the tangent plane, and is cut back to |k_t ξ| = μ f_e, the elastic part of the normal force alone.
 
 use super::{Tangent, Tangential};
-use crate::contact::PairGeometry;
 use crate::lane::Lane;
 use crate::space::{Space, Vector};
 
@@ -27,17 +26,16 @@ impl<S: Space> Tangential<S> for CoulombSpring {
     #[inline(always)]
     unsafe fn force<L: Lane>(
         &self,
-        geometry: &PairGeometry<S, L>,
+        normal: S::Vector<L>,
         tangent: &Tangent<S, L>,
         elastic: L,
         active: L::Mask,
         dt: L,
         memory: *mut f64,
     ) -> S::Vector<L> {
-        let normal = geometry.normal;
         // SAFETY: the caller vouches for the slots.
         let old: S::Vector<L> = unsafe { S::Vector::load(memory) };
-        let turned = S::twist(old, normal, tangent.mean_spin, dt);
+        let turned = S::twist(old, normal, tangent.turn);
         let grown = turned.add_scaled(dt, tangent.slip);
         // The normal turned by dn: ξ loses its part along the new normal and gains half of it along dn.
         let along = grown.dot(normal);

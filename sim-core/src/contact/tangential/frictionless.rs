@@ -1,7 +1,6 @@
 //! No friction: no tangential force, no spins, no memory.
 
 use super::{Tangent, Tangential};
-use crate::contact::PairGeometry;
 use crate::lane::Lane;
 use crate::space::{Space, Vector};
 
@@ -17,7 +16,7 @@ impl<S: Space> Tangential<S> for Frictionless {
     #[inline(always)]
     unsafe fn force<L: Lane>(
         &self,
-        _: &PairGeometry<S, L>,
+        _: S::Vector<L>,
         _: &Tangent<S, L>,
         _: L,
         _: L::Mask,

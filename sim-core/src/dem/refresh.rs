@@ -1,0 +1,348 @@
+//! Upkeep of near pairs (rarely found anew) and listed pairs (chosen among the near ones every few steps). Every thread
+//! of a crew takes part; no result depends on what is listed, as long as no touching pair is missing.
+
+use super::engine::Dem;
+use super::lists::{NEAR_MARGIN, point, speed};
+use super::threads::{Crew, Shared};
+use crate::boundary::Boundary;
+use crate::contact::ContactLaw;
+use crate::control::ServoWalls;
+use crate::neighbour::near_pairs;
+use crate::space::Space;
+use crate::state::{Body, Chunk, ContactList, Grains};
+
+/// Smallest and largest displacement budget of a particle between two refreshes [d].
+const LEAST_BUDGET: f64 = 4e-4;
+const MOST_BUDGET: f64 = 0.5 * NEAR_MARGIN;
+
+/// Bounds of the number of steps a refresh is meant to last.
+const STEPS_PER_REFRESH: (f64, f64) = (6.0, 120.0);
+
+impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
+    /// Gives every particle and wall a displacement budget for the coming steps and lists the pairs that may touch
+    /// within it. Finds the near pairs anew first when a particle could leave its margin.
+    pub(super) fn refresh(&mut self) {
+        let dem = Shared::new(&raw mut *self);
+        // SAFETY: this thread has the system to itself.
+        unsafe { Self::refresh_together(dem.get(), &Crew::alone()) };
+    }
+
+    /// The same by a crew.
+    ///
+    /// # Safety
+    /// All threads of the crew call this right after a meeting, and nobody else uses the system.
+    pub(super) unsafe fn refresh_together(dem: *mut Self, crew: &Crew) {
+        // SAFETY: between meetings every chunk, its bodies and its budgets are one thread's alone, all else is only
+        // read; at the meetings one thread has the system to itself.
+        unsafe {
+            let chunks = (*dem).chunks.len();
+            crew.meet(|| (*dem).prepare_budgets());
+            while let Some(chunk) = crew.claim(0, chunks) {
+                Self::measure(dem, chunk);
+            }
+            crew.meet(|| (*dem).choose_interval());
+            while let Some(chunk) = crew.claim(0, chunks) {
+                Self::give_budgets(dem, chunk);
+            }
+            crew.meet(|| (*dem).rebuild_if_strayed());
+            while let Some(chunk) = crew.claim(0, chunks) {
+                Self::list(dem, chunk);
+            }
+            crew.meet(|| (*dem).finish_refresh());
+        }
+    }
+
+    /// One thread, first: room for the budgets.
+    fn prepare_budgets(&mut self) {
+        let count = self.len();
+        self.lists.refreshes += 1;
+        self.lists.budget.resize(count, 0.0);
+    }
+
+    /// Speeds of the particles of a chunk, into their budgets, and their sum.
+    unsafe fn measure(dem: *mut Self, chunk: usize) {
+        // SAFETY: only this chunk and its budgets are written.
+        unsafe {
+            let (bodies, budget, own) = Self::parts(dem, chunk);
+            let mut sum = 0.0;
+            for (body, budget) in bodies.iter().zip(budget) {
+                *budget = speed(body);
+                sum += *budget;
+            }
+            own.rush = sum;
+        }
+    }
+
+    /// One thread: how long the coming lists are to last.
+    fn choose_interval(&mut self) {
+        let total: f64 = self.chunks.iter().map(|chunk| chunk.rush).sum();
+        let mean_speed = total / (self.len().max(1) as f64);
+        // A refresh costs some two listed pairs per particle; a listed pair is paid every step, and their number
+        // grows with the budget. The best interval is near this one (and no result depends on it).
+        let steps = (0.09 / (mean_speed * self.dt + 1e-300)).sqrt();
+        let steps = steps.clamp(STEPS_PER_REFRESH.0, STEPS_PER_REFRESH.1);
+        self.lists.horizon = 1.5 * steps * self.dt;
+        let horizon = self.lists.horizon;
+        if let Some(walls) = &self.walls {
+            self.lists.wall_budget = walls.velocity.map(|velocity| budget_of(velocity.abs(), horizon));
+        }
+        self.lists.strain_budget = if B::DEFORMS {
+            (horizon * self.boundary.fastest() * self.pair_reach()).clamp(1e-9, LEAST_BUDGET)
+        } else {
+            0.0
+        };
+        let strained = self.boundary.strain_since_mark(self.pair_reach()) + self.lists.strain_budget;
+        self.lists.margin = NEAR_MARGIN - 0.5 * strained;
+        self.lists.near_at.resize(self.bodies.len(), [f64::NAN; 3]);
+    }
+
+    /// Budgets of the particles of a chunk, and whether one of them could leave its margin.
+    unsafe fn give_budgets(dem: *mut Self, chunk: usize) {
+        // SAFETY: only this chunk, its bodies and its budgets are written.
+        unsafe {
+            let (bodies, budget, own) = Self::parts(dem, chunk);
+            let (boundary, lists) = (&(*dem).boundary, &(*dem).lists);
+            let near_at = &lists.near_at[own.start..own.end];
+            let mut stay = true;
+            for ((body, budget), from) in bodies.iter_mut().zip(budget).zip(near_at) {
+                *budget = budget_of(*budget, lists.horizon);
+                body.position[3] = 1.0 / *budget;
+                let from = boundary.since_mark(*from);
+                let square: f64 = (0..3).map(|k| (body.position[k] - from[k]).powi(2)).sum();
+                let room = lists.margin - *budget;
+                // Written so that a NaN strays.
+                stay &= room > 0.0 && square < room * room;
+            }
+            own.strayed = !stay;
+        }
+    }
+
+    fn rebuild_if_strayed(&mut self) {
+        if self.chunks.iter().any(|chunk| chunk.strayed) {
+            self.rebuild();
+        }
+    }
+
+    /// Lists the pairs and wall contacts of a chunk.
+    unsafe fn list(dem: *mut Self, chunk: usize) {
+        // SAFETY: only this chunk is written.
+        unsafe {
+            let shared = &*dem;
+            let own = &mut *shared.chunks.as_ptr().cast_mut().add(chunk);
+            let (bodies, lists) = (shared.bodies.as_slice(), &shared.lists);
+            list_pairs::<S, G, B, C>(
+                own,
+                bodies,
+                &lists.budget,
+                &shared.grains,
+                &shared.boundary,
+                lists.strain_budget,
+                &shared.law,
+            );
+            if let Some(walls) = &shared.walls {
+                list_walls::<S, G, C>(own, bodies, &lists.budget, &shared.grains, walls, &lists.wall_budget);
+            }
+        }
+    }
+
+    /// One thread, last: tells every chunk which ghosts of earlier chunks lie in it.
+    fn finish_refresh(&mut self) {
+        self.lists.used = 0.0;
+        self.lists.due = false;
+        if !self.chunks.iter().any(|chunk| chunk.ghosts.changed) {
+            return;
+        }
+        for chunk in &mut self.chunks {
+            chunk.incoming.clear();
+            chunk.ghosts.changed = false;
+        }
+        for c in 0..self.chunks.len() {
+            let (earlier, later) = self.chunks.split_at_mut(c + 1);
+            let mut target = 0;
+            for (place, &particle) in (0_u32..).zip(&earlier[c].ghosts.particles) {
+                while later[target].end <= particle as usize {
+                    target += 1;
+                }
+                later[target].incoming.push((c as u32, place, particle));
+            }
+        }
+    }
+
+    /// Bodies and budgets of a chunk, and the chunk.
+    ///
+    /// # Safety
+    /// The caller has this chunk to itself.
+    unsafe fn parts<'a>(dem: *mut Self, chunk: usize) -> (&'a mut [Body], &'a mut [f64], &'a mut Chunk) {
+        // SAFETY: the caller vouches; chunks do not overlap.
+        unsafe {
+            let shared = &*dem;
+            let own = &mut *shared.chunks.as_ptr().cast_mut().add(chunk);
+            let count = own.end - own.start;
+            let bodies = shared.bodies.as_ptr().cast_mut().add(own.start);
+            let budget = shared.lists.budget.as_ptr().cast_mut().add(own.start);
+            (
+                std::slice::from_raw_parts_mut(bodies, count),
+                std::slice::from_raw_parts_mut(budget, count),
+                own,
+            )
+        }
+    }
+
+    /// Finds the near pairs anew.
+    pub(super) fn rebuild(&mut self) {
+        self.lists.rebuilds += 1;
+        let bodies = &self.bodies;
+        self.lists.near_at = bodies.iter().map(point).collect();
+        let reach = 2.0 * NEAR_MARGIN + self.law.range();
+        let size = 2.0 * self.grains.largest_radius() + reach;
+        self.boundary.mark();
+        let boundary = &self.boundary;
+        let mut places: Vec<[f64; 3]> = bodies.iter().map(|body| boundary.inside(point(body))).collect();
+        // Images near the borders of a periodic space join the search; `real` tells whose they are.
+        let mut real: Vec<u32> = (0..bodies.len() as u32).collect();
+        for slot in 0..bodies.len() {
+            boundary.images(places[slot], size, &mut |image| {
+                places.push(image);
+                real.push(slot as u32);
+            });
+        }
+        self.lists.cells.build(places.len(), size, |place| places[place]);
+        let (cells, grains) = (&self.lists.cells, &self.grains);
+        for chunk in &mut self.chunks {
+            near_pairs(
+                cells,
+                chunk.start..chunk.end,
+                |place| places[place],
+                |place| real[place as usize],
+                |i, j| grains.radius(i) + grains.radius(j) + reach,
+                &mut chunk.near_start,
+                &mut chunk.near,
+            );
+        }
+    }
+}
+
+/// Displacement budget [d] at a speed, for a time `horizon` [τ].
+fn budget_of(speed: f64, horizon: f64) -> f64 {
+    (horizon * speed).clamp(LEAST_BUDGET, MOST_BUDGET)
+}
+
+/// Lists the pairs of a chunk that may touch, keeping the memory of those that were listed.
+fn list_pairs<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>>(
+    chunk: &mut Chunk,
+    bodies: &[Body],
+    budget: &[f64],
+    grains: &G,
+    boundary: &B,
+    slack: f64,
+    law: &C,
+) {
+    select::<S, G, B>(chunk, bodies, budget, grains, boundary, slack + law.range());
+    let [inner, outer] = &mut chunk.spare;
+    inner.clear();
+    outer.clear();
+    let end = chunk.end as u32;
+    let (mut inner_at, mut outer_at) = (0, 0);
+    for &pair in &chunk.selected {
+        let (list, old, at) = if pair.1 < end {
+            (&mut *inner, &chunk.inner, &mut inner_at)
+        } else {
+            (&mut *outer, &chunk.outer, &mut outer_at)
+        };
+        while *at < old.count && old.pair(*at) < pair {
+            *at += 1;
+        }
+        let known = *at < old.count && old.pair(*at) == pair;
+        list.push(pair.0, pair.1, known.then_some((old, *at)), C::vacant);
+        if G::CONSTANTS > 0 {
+            list.set_constants(grains.constants(pair.0 as usize, pair.1 as usize));
+        }
+    }
+    let other_ghosts = outer.count != chunk.outer.count
+        || outer.indices != chunk.outer.indices
+        || chunk.ghosts.targets.len() != outer.indices.len();
+    std::mem::swap(&mut chunk.inner, inner);
+    std::mem::swap(&mut chunk.outer, outer);
+    if other_ghosts {
+        list_ghosts(chunk);
+    }
+}
+
+/// Chooses the near pairs of a chunk whose gap may close while the budgets last, in order.
+fn select<S: Space, G: Grains, B: Boundary<S>>(
+    chunk: &mut Chunk,
+    bodies: &[Body],
+    budget: &[f64],
+    grains: &G,
+    boundary: &B,
+    slack: f64,
+) {
+    let Chunk { selected, near, near_start, start, end, .. } = chunk;
+    // One place more than there are pairs: each is written, then kept or overwritten by the next, without a branch
+    // that nobody can predict.
+    selected.resize(near.len() + 1, (0, 0));
+    let mut count = 0;
+    for (i, range) in (*start..*end).zip(near_start.windows(2)) {
+        let x = &bodies[i].position;
+        let reach = grains.radius(i) + budget[i] + slack;
+        for &j in &near[range[0] as usize..range[1] as usize] {
+            let y = &bodies[j as usize].position;
+            let [dx, dy, dz] = boundary.separation([y[0] - x[0], y[1] - x[1], y[2] - x[2]]);
+            let cutoff = reach + grains.radius(j as usize) + budget[j as usize];
+            selected[count] = (i as u32, j);
+            count += usize::from(dx * dx + dy * dy + dz * dz < cutoff * cutoff);
+        }
+    }
+    selected.truncate(count);
+}
+
+/// Lists the ghosts of a chunk: the particles b of its outer contacts.
+fn list_ghosts(chunk: &mut Chunk) {
+    let ghosts = &mut chunk.ghosts;
+    ghosts.changed = true;
+    ghosts.particles.clear();
+    ghosts.particles.extend((0..chunk.outer.count).map(|k| chunk.outer.pair(k).1));
+    ghosts.particles.sort_unstable();
+    ghosts.particles.dedup();
+    ghosts.forces.clear();
+    ghosts.forces.resize(ghosts.particles.len(), crate::state::Force::default());
+    ghosts.targets.clear();
+    for k in 0..chunk.outer.count {
+        if k % 4 == 0 {
+            ghosts.targets.push([0; 4]);
+        }
+        let (_, b) = chunk.outer.pair(k);
+        let place = ghosts.particles.binary_search(&b).expect("every b of an outer contact is a ghost");
+        ghosts.targets[k / 4][k % 4] = place as u32;
+    }
+}
+
+/// Lists the particles of a chunk that may touch a wall, keeping the memory of those that were listed.
+fn list_walls<S: Space, G: Grains, C: ContactLaw<S>>(
+    chunk: &mut Chunk,
+    bodies: &[Body],
+    budget: &[f64],
+    grains: &G,
+    walls: &ServoWalls,
+    wall_budget: &[f64; 6],
+) {
+    for wall in 0..6 {
+        let (axis, outward) = (ServoWalls::axis(wall), ServoWalls::outward(wall));
+        let list = &mut chunk.spare[0];
+        list.clear();
+        let old = &chunk.walls[wall];
+        let mut at = 0;
+        for i in chunk.start..chunk.end {
+            let distance = (walls.position[wall] - bodies[i].position[axis]) * outward;
+            if distance < grains.radius(i) + budget[i] + wall_budget[wall] {
+                let particle = i as u32;
+                while at < old.count && old.pair(at).0 < particle {
+                    at += 1;
+                }
+                let known = at < old.count && old.pair(at).0 == particle;
+                list.push(particle, particle, known.then_some((old, at)), C::vacant);
+            }
+        }
+        std::mem::swap(&mut chunk.walls[wall], &mut chunk.spare[0]);
+    }
+}
