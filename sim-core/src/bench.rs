@@ -2,7 +2,7 @@
 
 use scene::Reduced;
 
-use crate::dem::{Counters, Dynamics, Fault};
+use crate::dem::{Counters, Dynamics, Fault, View};
 use crate::{Options, SimError, spheres};
 
 /// A particle system at the state that is to be timed.
@@ -52,6 +52,12 @@ impl Bench {
     #[must_use]
     pub fn counters(&self) -> Counters {
         self.dynamics.counters()
+    }
+
+    /// The state at this instant.
+    #[must_use]
+    pub fn view(&self) -> View {
+        self.dynamics.view()
     }
 
     /// Name of the compiled kernel.

@@ -9,7 +9,7 @@ use crate::contact::ContactLaw;
 use crate::control::ServoWalls;
 use crate::neighbour::near_pairs;
 use crate::space::Space;
-use crate::state::{Body, Chunk, ContactList, Grains};
+use crate::state::{Body, Chunk, Grains};
 
 /// Smallest and largest displacement budget of a particle between two refreshes [d].
 const LEAST_BUDGET: f64 = 4e-4;
@@ -24,28 +24,28 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     pub(super) fn refresh(&mut self) {
         let dem = Shared::new(&raw mut *self);
         // SAFETY: this thread has the system to itself.
-        unsafe { Self::refresh_together(dem.get(), &Crew::alone()) };
+        unsafe { Self::refresh_together(dem.get(), &Crew::alone(), 0) };
     }
 
     /// The same by a crew.
     ///
     /// # Safety
-    /// All threads of the crew call this right after a meeting, and nobody else uses the system.
-    pub(super) unsafe fn refresh_together(dem: *mut Self, crew: &Crew) {
+    /// All threads of the crew call this, each with its number, right after a meeting, and nobody else uses the system.
+    pub(super) unsafe fn refresh_together(dem: *mut Self, crew: &Crew, thread: usize) {
         // SAFETY: between meetings every chunk, its bodies and its budgets are one thread's alone, all else is only
         // read; at the meetings one thread has the system to itself.
         unsafe {
-            let chunks = (*dem).chunks.len();
+            let mine = crew.share(thread, (*dem).chunks.len());
             crew.meet(|| (*dem).prepare_budgets());
-            while let Some(chunk) = crew.claim(0, chunks) {
+            for chunk in mine.clone() {
                 Self::measure(dem, chunk);
             }
             crew.meet(|| (*dem).choose_interval());
-            while let Some(chunk) = crew.claim(0, chunks) {
+            for chunk in mine.clone() {
                 Self::give_budgets(dem, chunk);
             }
             crew.meet(|| (*dem).rebuild_if_strayed());
-            while let Some(chunk) = crew.claim(0, chunks) {
+            for chunk in mine {
                 Self::list(dem, chunk);
             }
             crew.meet(|| (*dem).finish_refresh());

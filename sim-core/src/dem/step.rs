@@ -24,24 +24,25 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         let crew = Crew::new(threads, chunks);
         let fault = std::sync::Mutex::new(None);
         let shared = Shared::new(&raw mut *self);
-        let work = || {
+        let work = |thread: usize| {
             let _poison = crew.poison_on_panic();
             for round in 1..=steps {
                 // SAFETY: all threads of the crew do the same; the crew deals out the chunks.
-                unsafe { Self::step_together(shared.get(), &crew, round, &fault) };
+                unsafe { Self::step_together(shared.get(), &crew, thread, round, &fault) };
                 if crew.stopped() {
                     break;
                 }
             }
         };
         if crew.is_alone() {
-            work();
+            work(0);
         } else {
             std::thread::scope(|scope| {
-                for _ in 1..threads {
-                    scope.spawn(work);
+                for thread in 1..threads {
+                    let work = &work;
+                    scope.spawn(move || work(thread));
                 }
-                work();
+                work(0);
             });
         }
         fault.into_inner().expect("no thread panics with the fault in hand").map_or(Ok(()), Err)
@@ -50,37 +51,37 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     /// One step of a crew.
     ///
     /// A chunk may move as soon as the forces of all chunks up to it are done: later chunks neither add to its forces
-    /// nor look at its bodies, because the lower index owns a contact. A lone thread therefore moves every chunk while
-    /// it is still in the cache; several do the forces first and fill the gaps at the end with motion.
+    /// nor look at its bodies, because the lower index owns a contact. The first thread therefore moves every chunk
+    /// right after its forces; the others do their forces first and wait for those before them.
     ///
     /// # Safety
-    /// All threads of the crew call this with the same arguments, and nobody else uses the system.
+    /// All threads of the crew call this, each with its number, and nobody else uses the system.
     unsafe fn step_together(
         dem: *mut Self,
         crew: &Crew,
+        thread: usize,
         round: u64,
         fault: &std::sync::Mutex<Option<Fault>>,
     ) {
-        // SAFETY: chunks are claimed once; whoever moves one has waited for the forces it depends on; the meetings
+        // SAFETY: every chunk has one thread; who moves a chunk has waited for the forces it depends on; the meetings
         // separate steps and lists.
         unsafe {
             let chunks = (*dem).chunks.len();
-            let fused = crew.is_alone() && !B::DEFORMS;
-            while let Some(chunk) = crew.claim(0, chunks) {
+            let mine = crew.share(thread, chunks);
+            // A deforming space moves by the virial of all chunks.
+            let fused = mine.start == 0 && !B::DEFORMS;
+            for chunk in mine.clone() {
                 Self::force_phase(dem, chunk);
                 if fused {
                     Self::motion_phase(dem, chunk);
-                } else {
-                    crew.report(chunk, round);
                 }
+                crew.report(chunk, round);
             }
-            let mut ready = 0;
-            while !fused && let Some(chunk) = crew.claim(1, chunks) {
-                // A deforming space moves by the virial of all chunks.
-                let needed = if B::DEFORMS { chunks } else { chunk + 1 };
-                crew.await_chunks(ready..needed, round);
-                ready = needed;
-                Self::motion_phase(dem, chunk);
+            if !fused {
+                crew.await_chunks(0..if B::DEFORMS { chunks } else { mine.start }, round);
+                for chunk in mine {
+                    Self::motion_phase(dem, chunk);
+                }
             }
             crew.meet(|| {
                 if let Err(what) = (*dem).serial_phase() {
@@ -89,7 +90,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                 }
             });
             if !crew.stopped() && (*dem).lists.due {
-                Self::refresh_together(dem, crew);
+                Self::refresh_together(dem, crew, thread);
             }
         }
     }

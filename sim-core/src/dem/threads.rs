@@ -14,8 +14,6 @@ pub(super) struct Crew {
     round: AtomicUsize,
     poisoned: AtomicBool,
     stopped: AtomicBool,
-    /// Next chunk to be claimed, one counter per kind of work.
-    next: [AtomicUsize; 2],
     /// Round of work in which a chunk was last done.
     done: Vec<AtomicU64>,
 }
@@ -40,7 +38,6 @@ impl Crew {
             round: AtomicUsize::new(0),
             poisoned: AtomicBool::new(false),
             stopped: AtomicBool::new(false),
-            next: std::array::from_fn(|_| AtomicUsize::new(0)),
             done: (0..chunks).map(|_| AtomicU64::new(0)).collect(),
         }
     }
@@ -68,10 +65,9 @@ impl Crew {
         self.stopped.load(Ordering::Acquire)
     }
 
-    /// A chunk that nobody has claimed for this kind of work since the last meeting, in ascending order.
-    pub(super) fn claim(&self, kind: usize, chunks: usize) -> Option<usize> {
-        let chunk = self.next[kind].fetch_add(1, Ordering::Relaxed);
-        (chunk < chunks).then_some(chunk)
+    /// The chunks of a thread: always the same ones, so that they stay in the cache of its core.
+    pub(super) fn share(&self, thread: usize, chunks: usize) -> std::ops::Range<usize> {
+        chunks * thread / self.threads..chunks * (thread + 1) / self.threads
     }
 
     /// Says that a chunk is done in this round of work (rounds ascend).
@@ -90,9 +86,6 @@ impl Crew {
     pub(super) fn meet(&self, alone: impl FnOnce()) {
         let round = self.round.load(Ordering::Acquire);
         if self.arrived.fetch_add(1, Ordering::AcqRel) + 1 == self.threads {
-            for next in &self.next {
-                next.store(0, Ordering::Relaxed);
-            }
             alone();
             self.arrived.store(0, Ordering::Relaxed);
             self.round.store(round.wrapping_add(1), Ordering::Release);
@@ -157,23 +150,23 @@ mod tests {
     }
 
     #[test]
-    fn every_chunk_is_claimed_once_and_awaited_until_reported() {
+    fn every_chunk_has_one_thread_and_is_awaited_until_reported() {
         let chunks = 5;
         let crew = Crew::new(2, chunks);
         let work: Vec<AtomicUsize> = (0..chunks).map(|_| AtomicUsize::new(0)).collect();
         std::thread::scope(|scope| {
-            for _ in 0..2 {
-                scope.spawn(|| {
+            for thread in 0..2 {
+                let (crew, work) = (&crew, &work);
+                scope.spawn(move || {
+                    let mine = crew.share(thread, chunks);
                     for round in 1..=200_u64 {
-                        while let Some(chunk) = crew.claim(0, chunks) {
+                        for chunk in mine.clone() {
                             work[chunk].fetch_add(1, Ordering::Relaxed);
                             crew.report(chunk, round);
                         }
-                        while let Some(chunk) = crew.claim(1, chunks) {
-                            crew.await_chunks(0..chunk + 1, round);
-                            for work in &work[..=chunk] {
-                                assert_eq!(work.load(Ordering::Relaxed) as u64, round);
-                            }
+                        crew.await_chunks(0..mine.end, round);
+                        for work in &work[..mine.end] {
+                            assert_eq!(work.load(Ordering::Relaxed) as u64, round);
                         }
                         crew.meet(|| {});
                     }
