@@ -94,8 +94,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             unsafe {
                 let a = indices.add(group * 2 * GROUP + lane);
                 let memory = memory.add(group * C::SLOTS * GROUP + lane);
-                let contact =
-                    self.pair::<f64>(a, a.add(GROUP), memory, constants::<G>(rows, group, lane));
+                let contact = self.pair::<f64>(a, a.add(GROUP), memory, constants::<G>(rows, group, lane));
                 let target = targets.at.add(group * targets.stride + lane);
                 self.apply::<f64>(a, targets.forces, target, &contact);
             }
