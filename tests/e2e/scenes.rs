@@ -5,8 +5,9 @@ use serde_json::{Value, json};
 /// Spheres of the test scenes: small enough for a run in a blink.
 const N: u64 = 40;
 
-/// Steps of a run that is long enough to be stopped in the middle: a second or two.
-pub const LONG: u64 = 300_000;
+/// Steps of a run that is long enough to be stopped in the middle: some seconds, ten times the wait for its first
+/// checkpoint, on a fast machine too.
+pub const LONG: u64 = 2_000_000;
 
 /// A sweep over cohesion; each run takes some hundredths of a second.
 pub fn quick(name: &str, sigma_c: &[f64]) -> Value {

@@ -5,7 +5,6 @@
 //! reduced scene and the physics version is the [`SceneKey`]: two scenes with equal keys are the same run. A
 //! [`Sweep`] is a source of scenes.
 
-mod canonical;
 mod cost;
 mod description;
 pub mod discs;

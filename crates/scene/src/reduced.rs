@@ -3,7 +3,6 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use crate::canonical::canonical;
 use crate::discs::ReducedDiscs;
 use crate::plastic::ReducedPlastic;
 use crate::spheres::ReducedSpheres;
@@ -63,6 +62,8 @@ impl Reduced {
             "physics_version": self.model().physics_version(),
             "scene": self,
         });
-        SceneKey::of(&canonical(&identity))
+        let canonical = serde_json_canonicalizer::to_vec(&identity)
+            .expect("finite numbers and text have a canonical form");
+        SceneKey::of(&canonical)
     }
 }

@@ -1,7 +1,8 @@
-//! `/v1/sweeps/{id}/collapse`, `/fit`, `/exponents`, `/forces`, `/bonds`, and their pictures.
+//! `/v1/sweeps/{id}/collapse`, `/fit`, `/exponents`, `/forces`, `/bonds`, `/variation`, and their pictures.
 
 use std::collections::BTreeMap;
 
+use analysis::variation::Varied;
 use axum::Json;
 use axum::extract::State;
 use axum::http::header::CONTENT_TYPE;
@@ -14,6 +15,7 @@ use utoipa_axum::routes;
 use super::extract::{Id, Params};
 use super::problem::Answer;
 use crate::app::{Analysis, App, Filters};
+use crate::error::AppError;
 
 pub(super) fn routes() -> OpenApiRouter<App> {
     OpenApiRouter::new()
@@ -27,6 +29,8 @@ pub(super) fn routes() -> OpenApiRouter<App> {
         .routes(routes!(forces_svg))
         .routes(routes!(bonds))
         .routes(routes!(bonds_svg))
+        .routes(routes!(variation))
+        .routes(routes!(variation_svg))
 }
 
 type Query = BTreeMap<String, String>;
@@ -183,4 +187,57 @@ pub(super) async fn bonds_svg(
     Params(query): Params<Query>,
 ) -> Answer<impl IntoResponse> {
     picture(app, id, Analysis::Bonds, query).await
+}
+
+/// Whether a key beside the groups of the collapse changes the void ratio
+///
+/// Blocks of runs that differ only in the key `of` (`alpha_n`, `mw` or `ei`), and the F test of its effect on e.
+/// Other query parameters filter the rows as for results. Answers also while the sweep runs; what the data do not
+/// determine is a problem document with the reason.
+#[utoipa::path(get, path = "/v1/sweeps/{id}/variation", tag = "analysis",
+    params(("id" = SweepId, Path), ("of" = String, Query, description = "The varied key: alpha_n, mw or ei")),
+    responses((status = 200, body = Object),
+        (status = 422, body = ProblemDocument, content_type = "application/problem+json", description = "Not determined by the data")))]
+pub(super) async fn variation(
+    State(app): State<App>,
+    Id(id): Id<SweepId>,
+    Params(mut query): Params<Query>,
+) -> Answer<Json<Value>> {
+    let varied = varied(&mut query)?;
+    answer(app, id, Analysis::Variation(varied), query).await
+}
+
+/// Whether a key beside the groups of the collapse changes the void ratio, as a picture
+#[utoipa::path(get, path = "/v1/sweeps/{id}/variation.svg", tag = "analysis",
+    params(("id" = SweepId, Path), ("of" = String, Query, description = "The varied key: alpha_n, mw or ei")),
+    responses((status = 200, body = String, content_type = "image/svg+xml"),
+        (status = 422, body = ProblemDocument, content_type = "application/problem+json", description = "Not determined by the data")))]
+pub(super) async fn variation_svg(
+    State(app): State<App>,
+    Id(id): Id<SweepId>,
+    Params(mut query): Params<Query>,
+) -> Answer<impl IntoResponse> {
+    let varied = varied(&mut query)?;
+    picture(app, id, Analysis::Variation(varied), query).await
+}
+
+/// Takes the varied key out of the query; what is left filters the rows.
+fn varied(query: &mut Query) -> Answer<Varied> {
+    let of = query.remove("of").unwrap_or_default();
+    let known = match of.as_str() {
+        "alpha_n" => Varied::AlphaN,
+        "mw" => Varied::Mw,
+        "ei" => Varied::Ei,
+        _ => {
+            return Err(AppError::field(
+                "query",
+                "of",
+                of,
+                "is none of alpha_n, mw and ei",
+                "name the varied key, as in ?of=alpha_n",
+            )
+            .into());
+        }
+    };
+    Ok(known)
 }

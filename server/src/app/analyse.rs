@@ -3,6 +3,7 @@
 use analysis::collapse::CollapseOptions;
 use analysis::exponents::ExponentOptions;
 use analysis::plot;
+use analysis::variation::Varied;
 use analysis::{FitError, MasterFit, Run};
 use protocol::SweepId;
 use serde::Serialize;
@@ -24,6 +25,8 @@ pub enum Analysis {
     Bonds,
     /// Force exponents β± against η and η*.
     Forces,
+    /// Whether a key beside the groups of the collapse changes the void ratio.
+    Variation(Varied),
 }
 
 impl App {
@@ -96,6 +99,7 @@ fn computed(what: Analysis, runs: &[Run]) -> AppResult<Value> {
         Analysis::Exponents => plain(&exponents(runs)?),
         Analysis::Bonds => plain(&analysis::bonds(runs).map_err(refused)?),
         Analysis::Forces => plain(&analysis::forces(runs).map_err(refused)?),
+        Analysis::Variation(varied) => plain(&analysis::variation(runs, varied).map_err(refused)?),
     }
 }
 
@@ -115,6 +119,9 @@ fn drawn(what: Analysis, runs: &[Run]) -> AppResult<String> {
         Analysis::Exponents => plot::exponents_svg(&exponents(runs)?),
         Analysis::Bonds => plot::bonds_svg(&analysis::bonds(runs).map_err(refused)?),
         Analysis::Forces => plot::forces_svg(&analysis::forces(runs).map_err(refused)?),
+        Analysis::Variation(varied) => {
+            plot::variation_svg(&analysis::variation(runs, varied).map_err(refused)?)
+        }
     })
 }
 

@@ -41,8 +41,11 @@ impl App {
         let next = cut(&mut rows, limit).map(|row| row.seq.to_string());
         let mut items = Vec::with_capacity(rows.len());
         for row in rows {
-            let running =
-                if row.counts.leased > 0 { self.store().running_work(row.seq).await? } else { Vec::new() };
+            let running = if row.counts.leased > 0 {
+                self.store().running_work(row.seq).await?
+            } else {
+                RunningWork::default()
+            };
             items.push(view(row, &running));
         }
         Ok(Page { items, next })
@@ -204,7 +207,7 @@ fn result_view(row: ResultRow) -> ResultView {
     }
 }
 
-pub(super) fn view(row: SweepRow, running: &[RunningWork]) -> SweepView {
+pub(super) fn view(row: SweepRow, running: &RunningWork) -> SweepView {
     let work = work(&row, running);
     let over = row.state.is_terminal();
     SweepView {
@@ -228,24 +231,17 @@ pub(super) fn view(row: SweepRow, running: &[RunningWork]) -> SweepView {
 }
 
 #[expect(clippy::cast_precision_loss, reason = "counts of points stay far below 2^53")]
-fn work(row: &SweepRow, running: &[RunningWork]) -> Work {
+fn work(row: &SweepRow, running: &RunningWork) -> Work {
     // Points not expanded yet are taken to cost what the others cost on average.
     let share = if row.expanded > 0 { row.points as f64 / row.expanded as f64 } else { 1.0 };
-    let mut work = Work {
+    Work {
         total: row.cost * share,
         done: row.cost_done,
+        running_done: running.done,
         given_up: row.cost_given_up,
-        timed_cost: row.timed_cost,
-        timed_wall: row.timed_wall,
-        running: u32::try_from(running.len()).unwrap_or(u32::MAX),
-        ..Work::default()
-    };
-    for job in running {
-        let done = job.cost * job.fraction;
-        work.running_done += done * f64::from(job.points);
-        work.timed_cost += done;
-        work.timed_wall += job.wall_s;
-        work.longest_left = work.longest_left.max(job.cost - done);
+        timed_cost: row.timed_cost + running.timed_cost,
+        timed_wall: row.timed_wall + running.timed_wall,
+        running: running.jobs,
+        longest_left: running.longest_left,
     }
-    work
 }

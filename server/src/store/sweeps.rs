@@ -75,17 +75,19 @@ pub struct SweepRow {
     pub finished_at: Option<Moment>,
 }
 
-/// A running job of a sweep, for progress and ETA.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The running jobs of a sweep in sum, for progress and ETA.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RunningWork {
-    /// Estimated cost [core-seconds].
-    pub cost: f64,
-    /// Share done.
-    pub fraction: f64,
-    /// Wall seconds of this attempt.
-    pub wall_s: f64,
-    /// Points of the sweep that it serves.
-    pub points: u32,
+    /// How many.
+    pub jobs: u32,
+    /// Cost of the points they serve, each times its share done [core-seconds].
+    pub done: f64,
+    /// Cost of the jobs, each times its share done [core-seconds].
+    pub timed_cost: f64,
+    /// Wall seconds of their attempts.
+    pub timed_wall: f64,
+    /// Largest remaining cost of one job [core-seconds].
+    pub longest_left: f64,
 }
 
 impl SweepRow {
@@ -211,27 +213,26 @@ impl Store {
     ///
     /// # Errors
     /// When the database refuses.
-    pub async fn running_work(&self, sweep: i64) -> StoreResult<Vec<RunningWork>> {
-        // `cross join` fixes the order: walk the few leased jobs, not the many of the sweep.
-        let rows = sqlx::query(
-            "select j.cost, a.fraction, a.wall_s, w.points
+    pub async fn running_work(&self, sweep: i64) -> StoreResult<RunningWork> {
+        // `cross join` fixes the order: walk the few leased jobs, not the many of the sweep. Summed here: a row for
+        // each of some thousand slots would take longer to hand over than to add.
+        let row = sqlx::query(
+            "select count(*) jobs, total(j.cost * a.fraction * w.points) done, total(j.cost * a.fraction) timed_cost,
+                    total(a.wall_s) timed_wall, coalesce(max(j.cost * (1.0 - a.fraction)), 0.0) longest_left
              from jobs j indexed by jobs_leased
              cross join wants w on w.job = j.seq and w.sweep = ?1
              cross join attempts a on a.job = j.seq and a.attempt = j.attempt
              where j.state = 'leased'",
         )
         .bind(sweep)
-        .fetch_all(&self.reader)
+        .fetch_one(&self.reader)
         .await?;
-        rows.iter()
-            .map(|row| {
-                Ok(RunningWork {
-                    cost: row.try_get("cost")?,
-                    fraction: row.try_get("fraction")?,
-                    wall_s: row.try_get("wall_s")?,
-                    points: small(row.try_get("points")?),
-                })
-            })
-            .collect()
+        Ok(RunningWork {
+            jobs: small(row.try_get("jobs")?),
+            done: row.try_get("done")?,
+            timed_cost: row.try_get("timed_cost")?,
+            timed_wall: row.try_get("timed_wall")?,
+            longest_left: row.try_get("longest_left")?,
+        })
     }
 }

@@ -103,7 +103,8 @@ async fn routes_methods_ids_and_queries() {
     reply.expect(405, "method-not-allowed");
     service.get("/v1/sweeps/not-an-id").await.expect(404, "not-found");
     let nobody = uuid::Uuid::nil();
-    for path in ["", "/results", "/states", "/points", "/collapse", "/fit", "/bonds.svg"] {
+    for path in ["", "/results", "/states", "/points", "/collapse", "/fit", "/bonds.svg", "/variation?of=ei"]
+    {
         service.get(&format!("/v1/sweeps/{nobody}{path}")).await.expect(404, "not-found");
     }
     for path in ["", "/series", "/snapshot"] {
@@ -119,6 +120,9 @@ async fn routes_methods_ids_and_queries() {
     let sweep = service.submit(&definition("one", &[1e6], &[1])).await;
     for query in ["limit=0", "limit=x", "cursor=x", "p.min=much"] {
         service.get(&format!("/v1/sweeps/{sweep}/results?{query}")).await.expect(400, "invalid-query");
+    }
+    for query in ["", "?of=p"] {
+        service.get(&format!("/v1/sweeps/{sweep}/variation{query}")).await.expect(400, "invalid-query");
     }
     for format in ["parquet", "xls"] {
         service

@@ -144,7 +144,9 @@ async fn an_analysis_that_cannot_be_made_says_why() {
     let worker = service.register("a").await;
     let sweep = service.submit(&definition("few", &[1e6], &[1])).await;
     for _ in 0..2 {
-        for route in ["collapse", "fit", "exponents", "forces", "bonds", "fit.svg", "collapse.svg"] {
+        for route in
+            ["collapse", "fit", "exponents", "forces", "bonds", "variation?of=mw", "fit.svg", "collapse.svg"]
+        {
             let problem =
                 service.get(&format!("/v1/sweeps/{sweep}/{route}")).await.expect(422, "analysis-impossible");
             assert!(problem["detail"].as_str().unwrap().len() > 10, "{problem}");
