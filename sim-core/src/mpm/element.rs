@@ -6,8 +6,8 @@ mod tangent;
 
 use serde::{Deserialize, Serialize};
 
-pub use force::internal_force;
-pub use lanes::{advance_points, advance_points_plain, force_of_state};
+pub use force::{force_of_state, internal_force};
+pub use lanes::{advance_points, advance_points_plain};
 pub use tangent::internal_force_and_tangent;
 
 use super::constitutive::{Kinematics, Material};

@@ -96,10 +96,11 @@ impl Explicit {
         let material = &world.law.material;
         let shear_speed = (material.shear() / material.density).sqrt();
         let all = world.bodies.par_iter_mut().zip(&self.forces);
-        let lost: Vec<f64> = all
+        let done: Vec<[f64; 3]> = all
             .map(|(body, force)| {
                 let keep = 1.0 - (world.damping * dt * shear_speed / body.size).min(1.0);
                 let lost = if keep < 1.0 { damp(body, keep) } else { 0.0 };
+                let [work, internal] = half_power(body, force, gravity);
                 let nodes = body.velocity.as_chunks_mut::<2>().0.iter_mut().zip(force.as_chunks::<2>().0);
                 for ((v, f), mass) in nodes.zip(&body.mass) {
                     for axis in 0..2 {
@@ -107,10 +108,14 @@ impl Explicit {
                     }
                 }
                 body.fixed.iter().for_each(|&unknown| body.velocity[unknown as usize] = 0.0);
-                lost
+                [lost, dt * work, dt * internal]
             })
             .collect();
-        world.energies.damping += lost.iter().sum::<f64>();
+        for [lost, work, internal] in done {
+            world.energies.damping += lost;
+            world.energies.work += work;
+            world.energies.internal += internal;
+        }
     }
 
     /// Contact impulses.
@@ -126,8 +131,10 @@ impl Explicit {
         let pairs = memory.slots.par_iter_mut().zip(&mut self.rows).with_min_len(256);
         pairs.for_each(|(slot, row)| sweep.prepare(slot, row, outlines, bodies, walls, [dt, scale]));
         let sweeps = self.sweep.solve(&mut self.rows, friction, numerics);
+        let gained = self.sweep.work_on_bodies(bodies, &self.forces, world.acceleration, dt);
         world.effort.sweeps += sweeps as u64;
         self.sweep.scatter(&mut world.bodies);
+        let (mut by_walls, mut rubbed) = (0.0, 0.0);
         for (slot, row) in world.memory.slots.iter_mut().zip(&self.rows) {
             slot.impulse = row.impulse;
             if row.impulse == [0.0; 2] {
@@ -135,41 +142,45 @@ impl Explicit {
             }
             slot.total += row.impulse[0];
             if friction > 0.0 {
-                world.energies.friction -= row.impulse[1] * self.sweep.tangential(row);
+                rubbed -= row.impulse[1] * self.sweep.tangential(row);
             }
             if let Partner::Wall(number) = slot.key.partner {
                 world.wall_impulse[number as usize] += row.impulse[0];
                 let p = row.force();
-                world.energies.work += p[0] * row.wall_velocity[0] + p[1] * row.wall_velocity[1];
+                by_walls += p[0] * row.wall_velocity[0] + p[1] * row.wall_velocity[1];
             }
         }
+        world.energies.work += by_walls;
+        world.energies.friction += rubbed;
+        world.energies.contact += by_walls - rubbed - gained;
     }
 
     /// Displacements, walls and stresses.
     fn advance(&mut self, world: &mut World, dt: f64) -> Result<(), Failure> {
         let (law, gravity) = (world.law, world.acceleration);
         let all = world.bodies.par_iter_mut().zip(&mut self.forces).enumerate();
-        let done: Vec<Result<[f64; 3], Failure>> = all
+        let done: Vec<Result<[f64; 4], Failure>> = all
             .map(|(number, (body, force))| {
-                let (mut fastest, mut work) = (0.0_f64, 0.0);
+                let [work, internal] = half_power(body, force, gravity);
+                let mut fastest = 0.0_f64;
                 let nodes = body.displacement.as_chunks_mut::<2>().0.iter_mut();
-                for ((u, v), mass) in nodes.zip(body.velocity.as_chunks::<2>().0).zip(&body.mass) {
+                for (u, v) in nodes.zip(body.velocity.as_chunks::<2>().0) {
                     fastest = fastest.max(v[0] * v[0] + v[1] * v[1]);
                     for axis in 0..2 {
                         u[axis] += dt * v[axis];
-                        work += mass * gravity[axis] * dt * v[axis];
                     }
                 }
                 let dissipated =
                     advance_points(body, &law, force).map_err(|_| Failure::Inverted { body: number })?;
-                Ok([fastest, work, dissipated])
+                Ok([fastest, dt * work, dt * internal, dissipated])
             })
             .collect();
         let mut fastest = 0.0_f64;
         for one in done {
-            let [speed, work, dissipated] = one?;
+            let [speed, work, internal, dissipated] = one?;
             fastest = fastest.max(speed);
             world.energies.work += work;
+            world.energies.internal += internal;
             world.energies.plastic += dissipated;
         }
         let of_wall = |wall: &Wall| wall.velocity[0].abs() + wall.velocity[1].abs();
@@ -184,6 +195,20 @@ impl Explicit {
         world.effort.substeps += 1;
         Ok(())
     }
+}
+
+/// Half the power of gravity and of the stresses at the present velocity: with the velocities before and after a step
+/// both halves make the power at its middle, and the balance of kinetic energy closes to round-off.
+fn half_power(body: &Body, force: &[f64], gravity: [f64; 2]) -> [f64; 2] {
+    let (mut weight, mut internal) = (0.0, 0.0);
+    let nodes = body.velocity.as_chunks::<2>().0.iter().zip(force.as_chunks::<2>().0);
+    for ((v, f), mass) in nodes.zip(&body.mass) {
+        for axis in 0..2 {
+            weight += 0.5 * mass * gravity[axis] * v[axis];
+            internal += 0.5 * f[axis] * v[axis];
+        }
+    }
+    [weight, internal]
 }
 
 /// Scales what is not rigid motion of the body by `keep`; returns the kinetic energy this takes. Momentum and angular

@@ -4,14 +4,16 @@
 //! A = M + θ² Δt² K couples no two bodies: each has its own factor, and contact sees it through the compliance of the
 //! body's boundary.
 
+mod commit;
+
 use rayon::prelude::*;
 
 use super::body::{Body, Points};
 use super::contact::detect::{Outline, candidates};
 use super::contact::gauss_seidel::{self, Tolerance};
-use super::contact::rows::{Rows, tangent};
-use super::contact::{Candidate, Key, Partner, Wall};
-use super::element::{Law, internal_force, internal_force_and_tangent};
+use super::contact::rows::Rows;
+use super::contact::{Candidate, Key, Wall};
+use super::element::{Law, force_of_state, internal_force, internal_force_and_tangent};
 use super::failure::Failure;
 use super::skyline::Skyline;
 use super::world::World;
@@ -27,6 +29,7 @@ struct Work {
     velocity: Vec<f64>,
     free: Vec<f64>,
     displacement: Vec<f64>,
+    /// Internal force at the start of the step.
     start_force: Vec<f64>,
     force: Vec<f64>,
     residual: Vec<f64>,
@@ -107,10 +110,6 @@ impl Implicit {
             world.impulses.iter().map(|&(key, p)| (key, p.map(|one| one * scale))).collect();
         for (work, body) in self.work.iter_mut().zip(&world.bodies) {
             work.velocity.copy_from_slice(&body.velocity);
-            work.start_force.fill(0.0);
-        }
-        if numerics.theta < 1.0 {
-            self.start_forces(world)?;
         }
         let cell = world.bodies.iter().map(|body| body.template.cell * body.size).fold(f64::MAX, f64::min);
         let mut worst = (f64::INFINITY, f64::INFINITY);
@@ -162,15 +161,6 @@ impl Implicit {
         }
         world.effort.newton += numerics.iterations as u64;
         Err(Failure::Residual { residual: worst.0, gap: worst.1 })
-    }
-
-    fn start_forces(&mut self, world: &World) -> Result<(), Failure> {
-        let law = world.law;
-        let all = self.work.par_iter_mut().zip(&world.bodies).enumerate();
-        collect(all.map(|(body, (work, state))| {
-            internal_force(state, &state.displacement, &law, &mut work.trial, &mut work.start_force)
-                .map_err(|_| Failure::Inverted { body })
-        }))
     }
 
     /// Forces at the present velocities, and matrices if wanted.
@@ -328,70 +318,19 @@ impl Implicit {
             }
         }
     }
-
-    /// Takes over the converged state.
-    fn commit(&mut self, world: &mut World, walls: Vec<Wall>, dt: f64) {
-        let hardening = world.law.material.plasticity;
-        let gravity = world.acceleration;
-        for (work, body) in self.work.iter_mut().zip(&mut world.bodies) {
-            if let Some(hardening) = hardening {
-                let area = body.size * body.size;
-                for p in 0..work.trial.plastic.len() {
-                    let flow = work.trial.plastic[p] - body.points.plastic[p];
-                    if flow > 0.0 {
-                        let volume = work.trial.gradient[p].det() * body.template.volumes[p] * area;
-                        let q = hardening.yield_stress + hardening.modulus * work.trial.plastic[p];
-                        world.energies.plastic += volume * q * flow;
-                    }
-                }
-            }
-            for (unknown, (new, old)) in work.displacement.iter().zip(&body.displacement).enumerate() {
-                world.energies.work += body.mass[unknown / 2] * gravity[unknown % 2] * (new - old);
-            }
-            std::mem::swap(&mut body.points, &mut work.trial);
-            body.displacement.copy_from_slice(&work.displacement);
-            body.velocity.copy_from_slice(&work.velocity);
-        }
-        world.impulses.clear();
-        world.normals.clear();
-        if world.friction > 0.0 {
-            for ((contact, work), body) in self.contact_velocity.iter_mut().zip(&self.work).zip(&world.bodies)
-            {
-                gather_contact(body, &work.velocity, contact);
-            }
-        }
-        for row in self.rows.rows.iter().filter(|row| row.impulse != [0.0; 2]) {
-            let t = tangent(row.normal);
-            *world.network.entry((row.key.body, row.key.partner)).or_insert(0.0) += row.impulse[0];
-            if world.friction > 0.0 {
-                let u = self.rows.relative(row, &self.contact_velocity);
-                let slip = (0..2).map(|axis| (u[axis] - row.wall_velocity[axis]) * t[axis]).sum::<f64>();
-                world.energies.friction -= row.impulse[1] * slip;
-            }
-            if let Partner::Wall(number) = row.key.partner {
-                world.wall_impulse[number as usize] += row.impulse[0];
-                let p = [0, 1].map(|i| row.impulse[0] * row.normal[i] + row.impulse[1] * t[i]);
-                world.energies.work += p[0] * row.wall_velocity[0] + p[1] * row.wall_velocity[1];
-            }
-            world.impulses.push((row.key, row.impulse));
-            world.normals.push(row.normal);
-        }
-        world.walls = walls;
-        world.last_dt = dt;
-        world.time += dt;
-        world.effort.substeps += 1;
-    }
 }
 
 impl Work {
     fn new(body: &Body) -> Self {
         let n = body.displacement.len();
         let zero = || vec![0.0; n];
+        let mut start_force = zero();
+        force_of_state(body, &mut start_force);
         Self {
             velocity: zero(),
             free: zero(),
             displacement: zero(),
-            start_force: zero(),
+            start_force,
             force: zero(),
             residual: zero(),
             trial: body.points.clone(),

@@ -56,6 +56,13 @@ pub struct Energies {
     pub friction: f64,
     /// Kinetic energy taken by the damping of the explicit step.
     pub damping: f64,
+    /// Work of the stresses, Σ ½ (fⁿ + fⁿ⁺¹)·Δu: elastic energy and plastic dissipation, and what a hypoelastic law
+    /// does not give back.
+    pub internal: f64,
+    /// What the implicit step takes for θ > ½: (θ − ½)(Δv·M Δv + Δf·Δu).
+    pub numerical: f64,
+    /// What is lost as contacts close: they do not bounce.
+    pub contact: f64,
 }
 
 /// Effort since the start.
@@ -152,6 +159,21 @@ impl World {
     #[must_use]
     pub fn kinetic_energy(&self) -> f64 {
         self.bodies.iter().map(Body::kinetic_energy).sum()
+    }
+
+    /// Work that is found nowhere: what went in, less what is kept and what was dissipated by the law, friction,
+    /// contacts and the integrator. A hypoelastic law loses or gains a little (1 % in a disc compressed by 17 %); the
+    /// rest is the tolerance of the solver.
+    #[must_use]
+    pub fn energy_gap(&self) -> f64 {
+        let Energies { work, plastic, friction, damping, numerical, contact, internal: _ } = self.energies;
+        work - self.elastic_energy()
+            - self.kinetic_energy()
+            - plastic
+            - friction
+            - damping
+            - numerical
+            - contact
     }
 
     /// Linear momentum.

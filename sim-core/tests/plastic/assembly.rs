@@ -44,7 +44,7 @@ fn the_explicit_method_compacts_as_the_implicit_one() {
         close("sigma", 0.1);
         close("z", 0.1);
     }
-    assert!(explicit.record.real("energy_gap").unwrap() > 0.0);
+    assert!(explicit.record.real("energy_gap").unwrap().abs() < 0.02);
 }
 
 #[test]
@@ -63,7 +63,7 @@ fn compaction_jams_stiffens_and_keeps_its_books() {
     assert!(of("overlap") < 1e-3);
     // wall work goes into the material and into the damping of shocks at the start, none comes from nowhere
     let gap = outcome.record.real("energy_gap").unwrap();
-    assert!((0.0..0.2).contains(&gap), "{gap}");
+    assert!(gap.abs() < 0.02, "{gap}");
     assert_eq!(outcome.packing.0["particles"].rows(), 24);
     assert!(outcome.record.real("phi_c").unwrap() > 0.75);
 }

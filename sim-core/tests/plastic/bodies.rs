@@ -120,6 +120,8 @@ fn a_block_slides_to_a_stop_by_coulombs_law() {
         *velocity += 0.1;
     }
     let start = centre(&world);
+    let before = world.energies;
+    let kinetic = world.kinetic_energy();
     let mut at_two = 0.0;
     run(&mut world, 0.5, 260, |world, step| {
         if step == 4 {
@@ -131,6 +133,11 @@ fn a_block_slides_to_a_stop_by_coulombs_law() {
     assert!((slid / exact - 1.0).abs() < 0.01, "{slid}");
     assert!((at_two - 0.198).abs() < 0.001, "{at_two}");
     assert!(world.momentum()[0].abs() < 1e-6 * mass * 0.1, "it rests");
+    // all of the kinetic energy went into friction but for what backward Euler takes: ½ m μ g Δt per v₀
+    let rubbed = world.energies.friction - before.friction;
+    let taken = world.energies.numerical - before.numerical;
+    assert!((rubbed / kinetic - 1.0).abs() < 0.01, "friction took {rubbed} of {kinetic}");
+    assert!(((rubbed + taken) / kinetic - 1.0).abs() < 2e-3, "{rubbed} and {taken} of {kinetic}");
 }
 
 #[test]

@@ -9,3 +9,4 @@ mod reference;
 mod scenes;
 mod single_disc;
 mod square_cell;
+mod tolerance;

@@ -4,10 +4,10 @@ use super::{Method, ReducedPlastic, Setup};
 use crate::Cost;
 
 /// Wall time of one material point in one implicit step, Newton iterations and contact included, one core [ns].
-const IMPLICIT_NANOSECONDS: f64 = 8000.0;
+const IMPLICIT_NANOSECONDS: f64 = 6000.0;
 
 /// Wall time of one material point in one explicit step, contact included, one core [ns].
-const EXPLICIT_NANOSECONDS: f64 = 60.0;
+const EXPLICIT_NANOSECONDS: f64 = 90.0;
 /// Mean stable step of the explicit method over the time a P-wave takes through the smallest cell.
 const STABLE: f64 = 0.5;
 

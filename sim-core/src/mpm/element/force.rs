@@ -3,7 +3,8 @@
 use super::{Inverted, LEAST_STEP_JACOBIAN, Law};
 use crate::mpm::body::{Body, Points};
 use crate::mpm::constitutive::{advance, increment};
-use crate::mpm::plane::Mat2;
+use crate::mpm::plane::{Mat2, Stress};
+use crate::mpm::real::Real;
 
 /// The internal force on every node for a displacement, and the state it leads to, from the state of `body`.
 ///
@@ -59,13 +60,8 @@ fn by_cell<const N: usize>(
             let update = advance(&law.material, body.points.stress[p], body.points.plastic[p], &strain);
             trial.stress[p] = update.stress;
             trial.plastic[p] = body.points.plastic[p] + update.plastic;
-            // V σ F⁻ᵀ with the adjugate: V0 · cof(F)
             let weight = template.volumes[p] * area * unit;
-            let s = update.stress;
-            let xx = weight * (s.xx * now.yy - s.xy * now.xy);
-            let xy = weight * (s.xy * now.xx - s.xx * now.yx);
-            let yx = weight * (s.xy * now.yy - s.yy * now.xy);
-            let yy = weight * (s.yy * now.xx - s.xy * now.yx);
+            let [xx, xy, yx, yy] = cofactor_stress(weight, update.stress, now);
             for (target, g) in sum.iter_mut().zip(&gradients[p]) {
                 target[0] += xx * g[0] + xy * g[1];
                 target[1] += yx * g[0] + yy * g[1];
@@ -77,6 +73,51 @@ fn by_cell<const N: usize>(
         }
     }
     Ok(())
+}
+
+/// The internal force of the state of `body`, no point moved: for four-node cells with the bits that
+/// [`advance_points`](super::advance_points) left behind.
+pub fn force_of_state(body: &Body, force: &mut [f64]) {
+    match body.template.nodes_per_cell {
+        4 => of_state::<4>(body, force),
+        16 => of_state::<16>(body, force),
+        other => unreachable!("cells have 4 or 16 nodes, not {other}"),
+    }
+}
+
+fn of_state<const N: usize>(body: &Body, force: &mut [f64]) {
+    let template = &*body.template;
+    let (unit, area) = (1.0 / body.size, body.size * body.size);
+    force.fill(0.0);
+    let gradients = template.gradients.as_chunks::<N>().0;
+    for (cell, nodes) in template.cells.as_chunks::<N>().0.iter().enumerate() {
+        let first = template.first_point[cell] as usize;
+        let mut sum = [[0.0; 2]; N];
+        for p in first..template.first_point[cell + 1] as usize {
+            let weight = template.volumes[p] * area * unit;
+            let [xx, xy, yx, yy] = cofactor_stress(weight, body.points.stress[p], body.points.gradient[p]);
+            for (target, g) in sum.iter_mut().zip(&gradients[p]) {
+                // the first term is not added to a zero: −0 would become +0
+                let (x, y) = (xx * g[0] + xy * g[1], yx * g[0] + yy * g[1]);
+                *target = if p == first { [x, y] } else { [target[0] + x, target[1] + y] };
+            }
+        }
+        for (node, sum) in nodes.iter().zip(&sum) {
+            force[2 * *node as usize] += sum[0];
+            force[2 * *node as usize + 1] += sum[1];
+        }
+    }
+}
+
+/// V σ F⁻ᵀ by the adjugate, V0 σ cof(F): components xx, xy, yx, yy.
+#[inline(always)]
+pub(super) fn cofactor_stress<T: Real>(weight: T, s: Stress<T>, f: Mat2<T>) -> [T; 4] {
+    [
+        weight * (s.xx * f.yy - s.xy * f.xy),
+        weight * (s.xy * f.xx - s.xx * f.yx),
+        weight * (s.xy * f.yy - s.yy * f.xy),
+        weight * (s.yy * f.xx - s.xy * f.yx),
+    ]
 }
 
 /// F = I + Σ_a u_a ⊗ ∇N_a.

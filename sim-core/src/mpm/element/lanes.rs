@@ -2,6 +2,7 @@
 //!
 //! The same laws in the same order as [`internal_force`](super::internal_force), which is the oracle: the bits agree.
 
+use super::force::cofactor_stress;
 use super::{Inverted, LEAST_STEP_JACOBIAN, Law};
 use crate::mpm::body::Body;
 use crate::mpm::constitutive::{advance, increment};
@@ -81,12 +82,7 @@ fn all(body: &mut Body, law: &Law, force: &mut [f64]) -> Result<f64, Inverted> {
             let q = flowed * hardening.modulus + hardening.yield_stress;
             dissipated += (*volumes * det * q * update.plastic).sum();
         }
-        // V σ F⁻ᵀ with the adjugate: V0 · cof(F)
-        let weight = *volumes * area * unit;
-        let xx = weight * (s.xx * now.yy - s.xy * now.xy);
-        let xy = weight * (s.xy * now.xx - s.xx * now.yx);
-        let yx = weight * (s.xy * now.yy - s.yy * now.xy);
-        let yy = weight * (s.yy * now.xx - s.xy * now.yx);
+        let [xx, xy, yx, yy] = cofactor_stress(*volumes * area * unit, s, now);
         let along = |a: usize| xx * g[a][0] + xy * g[a][1];
         let up = |a: usize| yx * g[a][0] + yy * g[a][1];
         let x = Quad::sums([along(0), along(1), along(2), along(3)]);
@@ -136,33 +132,4 @@ fn gather_stress(of: &[Stress; 4]) -> Stress<Quad> {
 fn scatter_stress(to: &mut [Stress; 4], s: &Stress<Quad>) {
     let rows = Quad::transposed([s.xx, s.yy, s.zz, s.xy]);
     *to = rows.map(|Quad([xx, yy, zz, xy])| Stress { xx, yy, zz, xy });
-}
-
-/// The internal force of the state of `body`, no point moved: what [`advance_points`] left behind.
-pub fn force_of_state(body: &Body, force: &mut [f64]) {
-    let template = &*body.template;
-    let (unit, area) = (1.0 / body.size, body.size * body.size);
-    force.fill(0.0);
-    for (cell, nodes) in template.cells.as_chunks::<4>().0.iter().enumerate() {
-        let Lanes { gradients, volumes } = &template.lanes[cell];
-        let mut sum = [[0.0; 2]; 4];
-        for point in 0..4 {
-            let (f, s) = (body.points.gradient[4 * cell + point], body.points.stress[4 * cell + point]);
-            let weight = volumes.0[point] * area * unit;
-            let xx = weight * (s.xx * f.yy - s.xy * f.xy);
-            let xy = weight * (s.xy * f.xx - s.xx * f.yx);
-            let yx = weight * (s.xy * f.yy - s.yy * f.xy);
-            let yy = weight * (s.yy * f.xx - s.xy * f.yx);
-            for (target, g) in sum.iter_mut().zip(gradients) {
-                let g = [g[0].0[point], g[1].0[point]];
-                // the first term is not added to a zero: −0 would become +0
-                let (x, y) = (xx * g[0] + xy * g[1], yx * g[0] + yy * g[1]);
-                *target = if point == 0 { [x, y] } else { [target[0] + x, target[1] + y] };
-            }
-        }
-        for (node, sum) in nodes.iter().zip(&sum) {
-            force[2 * *node as usize] += sum[0];
-            force[2 * *node as usize + 1] += sum[1];
-        }
-    }
 }

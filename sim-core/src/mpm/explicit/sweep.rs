@@ -165,6 +165,33 @@ impl Sweep {
         }
     }
 
+    /// Work of the impulses on the bodies, Σ m (v − v*)·½ (v₀ + v): v* is the velocity without contact, which the
+    /// bodies still have, v₀ = v* − Δt (b − f/m) the one before the step.
+    pub(super) fn work_on_bodies(
+        &self,
+        bodies: &[Body],
+        forces: &[Vec<f64>],
+        gravity: [f64; 2],
+        dt: f64,
+    ) -> f64 {
+        let mut nodes = self.velocity.iter().zip(&self.yielding);
+        let mut sum = 0.0;
+        for (body, force) in bodies.iter().zip(forces) {
+            for (&node, (new, yielding)) in body.template.contact_nodes.iter().zip(&mut nodes) {
+                let mass = body.mass[node as usize];
+                for axis in 0..2 {
+                    let unknown = 2 * node as usize + axis;
+                    let free = body.velocity[unknown];
+                    if yielding[axis] > 0.0 && new[axis] != free {
+                        let start = free - dt * (gravity[axis] - force[unknown] / mass);
+                        sum += mass * (new[axis] - free) * 0.5 * (start + new[axis]);
+                    }
+                }
+            }
+        }
+        sum
+    }
+
     #[inline]
     fn relative(&self, row: &Row) -> [f64; 2] {
         let mut u = row.wall_velocity.map(|v| -v);

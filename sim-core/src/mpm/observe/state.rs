@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::curvature;
 use super::network::{Contact, Coordination, Impulses, contacts, coordination};
+use crate::mpm::contact::Partner;
 use crate::mpm::contact::detect::Outline;
 use crate::mpm::setup::{BOTTOM, LEFT, TOP};
 use crate::mpm::world::World;
@@ -77,6 +78,12 @@ pub struct State {
     pub plastic: f64,
     /// Kinetic energy.
     pub kinetic: f64,
+    /// Work against friction.
+    pub friction: f64,
+    /// Loss as contacts close.
+    pub contact: f64,
+    /// What the integrator takes: backward Euler's own dissipation, or the damping of the explicit step.
+    pub numerical: f64,
     /// Worst overlap of an outline with a wall, in cells.
     pub overlap: f64,
 }
@@ -217,20 +224,29 @@ impl View<'_> {
             elastic: world.elastic_energy(),
             plastic: world.energies.plastic,
             kinetic: world.kinetic_energy(),
+            friction: world.energies.friction,
+            contact: world.energies.contact,
+            numerical: world.energies.numerical + world.energies.damping,
             overlap: self.overlap(&outlines),
         }
     }
 
-    /// Length of outline in contact with the bottom wall: markers that bear impulse, half a spacing on either side.
+    /// Width of the contact zones on the bottom wall: for each body from its first to its last marker that bears
+    /// impulse, half a spacing more on either side. (Markers in between may be relieved by their neighbours.)
     fn contact_width(&self, outlines: &[Outline]) -> f64 {
-        let on = crate::mpm::contact::Partner::Wall(BOTTOM as u32);
-        let touching = self.world.impulses.iter().filter(|(key, _)| key.partner == on);
-        let spacing = |key: &crate::mpm::contact::Key| {
+        let on = Partner::Wall(BOTTOM as u32);
+        let mut zones: Vec<(u32, [f64; 2])> = Vec::new();
+        for (key, _) in self.world.impulses.iter().filter(|(key, _)| key.partner == on) {
             let points = &outlines[key.body as usize].points;
             let (n, k) = (points.len(), key.marker as usize);
-            0.5 * (points[(k + 1) % n][0] - points[(k + n - 1) % n][0]).abs()
-        };
-        touching.map(|(key, _)| spacing(key)).sum()
+            let x = points[k][0];
+            let half = 0.25 * (points[(k + 1) % n][0] - points[(k + n - 1) % n][0]).abs();
+            match zones.last_mut().filter(|(body, _)| *body == key.body) {
+                Some((_, zone)) => *zone = [zone[0].min(x - half), zone[1].max(x + half)],
+                None => zones.push((key.body, [x - half, x + half])),
+            }
+        }
+        zones.iter().map(|(_, zone)| zone[1] - zone[0]).sum()
     }
 
     fn centre_stress(&self) -> f64 {
@@ -300,6 +316,9 @@ impl State {
             ("elastic_energy", "E d^2", self.elastic),
             ("plastic_dissipation", "E d^2", self.plastic),
             ("kinetic_energy", "E d^2", self.kinetic),
+            ("friction_dissipation", "E d^2", self.friction),
+            ("contact_loss", "E d^2", self.contact),
+            ("numerical_loss", "E d^2", self.numerical),
             ("overlap", "cell", self.overlap),
         ]
     }

@@ -35,13 +35,13 @@ fn record(run: &PlasticDiscs) -> Result<Row, Box<dyn std::error::Error>> {
     row.put("status", status).put("steps", i64::try_from(run.log.steps)?);
     row.number("dt", if run.world.last_dt > 0.0 { run.world.last_dt } else { run.log.dt })?;
     row.number("sim_time", run.world.time)?;
-    if let Some(state) = jamming_point(&run.log.states) {
+    let isostatic = if run.scene.mu > 0.0 { 3.0 } else { 4.0 };
+    if let Some(state) = jamming_point(&run.log.states, isostatic) {
         row.number("phi_c", state.phi)?.number("strain_c", state.strain)?.number("sigma_c", state.sigma)?;
         row.number("z_c", state.z)?;
     }
     if let Some(last) = run.log.states.last().filter(|last| last.work > 0.0) {
-        let held = last.elastic + last.plastic + last.kinetic;
-        row.number("energy_gap", (last.work - held) / last.work)?;
+        row.number("energy_gap", run.world.energy_gap() / last.work)?;
     }
     let effort = run.world.effort;
     let substeps = effort.substeps.max(1) as f64;
@@ -53,8 +53,8 @@ fn record(run: &PlasticDiscs) -> Result<Row, Box<dyn std::error::Error>> {
 
 /// First state from which on the backbone is isostatic (Z ≥ 4 without friction, 3 with it) and the bottom wall bears
 /// more than 10⁻⁴ E until the end.
-fn jamming_point(states: &[State]) -> Option<&State> {
-    let jammed = |state: &State| state.z >= 4.0 && state.sigma > JAMMED_STRESS;
+fn jamming_point(states: &[State], isostatic: f64) -> Option<&State> {
+    let jammed = |state: &State| state.z >= isostatic && state.sigma > JAMMED_STRESS;
     let onset = states.iter().rposition(|state| !jammed(state)).map_or(0, |last| last + 1);
     states.get(onset)
 }
@@ -176,4 +176,27 @@ fn table(names: &[(&str, &str)], columns: &[Vec<f64>]) -> Result<Table, Box<dyn 
         table.push(name, unit, values)?;
     }
     Ok(table)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn jamming_is_isostatic_and_lasts() {
+        let state = |z: f64, sigma: f64| State { z, sigma, ..State::default() };
+        let states = [
+            state(4.5, 1e-3),
+            state(3.5, 1e-3),
+            state(3.6, 1e-3),
+            state(4.1, 0.0),
+            state(4.2, 1e-3),
+            state(5.0, 0.1),
+        ];
+        assert_eq!(jamming_point(&states, 4.0).map(|state| state.z), Some(4.2));
+        // with friction three contacts suffice, but the bottom wall has to bear something
+        assert_eq!(jamming_point(&states[..3], 3.0).map(|state| state.z), Some(4.5));
+        assert_eq!(jamming_point(&states, 3.0).map(|state| state.z), Some(4.2));
+        assert_eq!(jamming_point(&states, 6.0), None);
+    }
 }
