@@ -44,7 +44,7 @@ lmp.commands_list(
     + pair
     + [f"fix wall{axis} all wall/gran {wall} {axis}plane {a:.17g} {b:.17g}" for axis, a, b in zip("xyz", lo, hi)]
     + ["fix move all nve/sphere", f"timestep {DT}", "compute c all contact/atom", "compute z all reduce ave c_c",
-       "compute o all reduce max c_c", "thermo_style custom step c_z ke", "thermo 1000000000", "run 200"])
+       "compute o all reduce max c_c", "thermo_style custom step c_z ke", "thermo_modify norm no", "thermo 1000000000", "run 200"])
 start = time.perf_counter()
 lmp.command(f"run {steps} post no")
 seconds = time.perf_counter() - start

@@ -3,8 +3,8 @@
 
 usage: bench/peers/run.py [--scene FILE] [--packing FILE] [--steps N] [--repeats R] [--python PY] [--json FILE]
 
-The packing is made by our engine from a cohesionless scene (kept under target/, made once). Every code starts from the
-same centres at rest between the same six fixed walls, with the same spring, dashpot, tangential history and Coulomb
+The packing is made by our engine from a cohesionless scene at p = 1e-3 sigma_e, whose contacts stay closed between fixed
+walls (kept under target/, made once). Every code starts from the same centres at rest between the same six fixed walls, with the same spring, dashpot, tangential history and Coulomb
 limit (YADE: its own local damping instead of the dashpot), time step 0.1 and a list skin of 0.25 d where the code has a
 skin. Peers that are not installed are left out, and the reason is printed. Standard library only.
 

@@ -30,5 +30,5 @@ mod state;
 
 pub use compile::{compile, restore};
 pub use error::SimError;
-pub use explain::{Explanation, Skip, explain};
+pub use explain::{Explanation, Saving, Skip, explain};
 pub use simulation::{KernelChoice, Options, Progress, Simulation};

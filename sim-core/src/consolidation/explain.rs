@@ -27,7 +27,7 @@ pub(crate) fn explain(scene: &ReducedDiscs) -> Result<Explanation, SimError> {
     let kernel = discs(&parameters(scene), &pair, scene.dt, &Options::default()).kernel();
     let mut skips = Vec::new();
     let mut skip = |absent: &str, skipped: &str| {
-        skips.push(Skip { absent: absent.to_owned(), skipped: skipped.to_owned() });
+        skips.push(Skip { absent: absent.to_owned(), skipped: skipped.to_owned(), saves: None });
     };
     if scene.f0 == 0.0 {
         skip("attraction", "its force, and the search for pairs at a distance");

@@ -8,7 +8,7 @@ use crate::{Explanation, Skip};
 #[must_use]
 pub fn explain(scene: &ReducedPlastic) -> Explanation {
     let absent = |condition: bool, absent: &str, skipped: &str| {
-        condition.then(|| Skip { absent: absent.to_owned(), skipped: skipped.to_owned() })
+        condition.then(|| Skip { absent: absent.to_owned(), skipped: skipped.to_owned(), saves: None })
     };
     let dt_reason = if scene.method == Method::Explicit {
         "the stable step of the explicit method, estimated before the mesh is there; it shrinks as cells are squeezed; \

@@ -5,5 +5,6 @@
 mod collisions;
 mod conservation;
 mod equivalence;
+mod stability;
 mod statics;
 mod support;
