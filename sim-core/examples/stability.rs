@@ -204,6 +204,8 @@ fn main() {
     for mu in [0.0, 10.0] {
         whole(&format!("friction {mu}"), &json!({ "mu": mu }));
     }
-    whole("time step 3 τ asked for", &json!({ "dt": 3.0 }));
+    for dt in [0.1, 0.2, 0.4, 0.6, 0.8, 3.0] {
+        whole(&format!("time step {dt} τ given"), &json!({ "dt": dt }));
+    }
     restarts();
 }

@@ -15,6 +15,8 @@ use crate::{Options, Progress, SimError, Simulation};
 
 /// Version of the checkpoint of a run.
 const CHECKPOINT_VERSION: u32 = 1;
+/// Steps between looks where the scene gives a time step beyond twice the largest automatic one.
+const DARING_EVERY: u64 = 10;
 /// Growth of Z after which the stability bound of the time step is asked for again [1].
 const NETWORK_GROWTH: f64 = 1.0;
 
@@ -103,11 +105,18 @@ impl Run {
     fn next_event(&self) -> u64 {
         let step = self.dynamics.steps();
         let mut next = self.memory.next_sample.min(self.memory.step_limit);
-        next = next.min((step / guard::EVERY + 1) * guard::EVERY);
+        let looks = if self.daring() { DARING_EVERY } else { guard::EVERY };
+        next = next.min((step / looks + 1) * looks);
         if let Phase::Rolling { from, until } = self.memory.phase {
             next = next.min(from + ((step - from) / kicks::EVERY + 1) * kicks::EVERY).min(until);
         }
         next
+    }
+
+    /// Whether the scene gives a step beyond twice the largest automatic one. Jammed networks have critical steps of 0.2
+    /// to 0.3 τ, so that has no room for a network that grows between two samples, and is looked at often.
+    fn daring(&self) -> bool {
+        self.scene.dt.is_some_and(|dt| dt > 2.0 * start::LARGEST_DT)
     }
 
     /// Everything that is due at the present step.
@@ -115,6 +124,9 @@ impl Run {
         let step = self.dynamics.steps();
         let view = self.dynamics.view();
         self.look(&view)?;
+        if self.daring() {
+            self.adapt_dt();
+        }
         if step == self.memory.next_sample || step == self.memory.step_limit {
             self.sample(&view);
         }
@@ -137,7 +149,7 @@ impl Run {
         let step = view.step;
         let sample = Sample::of(view, self.dynamics.dt());
         // the bound costs some forty steps, so it is asked for only when the network has grown
-        if self.scene.dt.is_none() && sample.z >= self.memory.dt_bound_z + NETWORK_GROWTH {
+        if sample.z >= self.memory.dt_bound_z + NETWORK_GROWTH {
             self.memory.dt_bound_z = sample.z;
             self.adapt_dt();
         }
@@ -159,9 +171,14 @@ impl Run {
         }
     }
 
-    /// Lowers the time step when the network has become stiffer; never raises it.
+    /// Lowers the time step when the network has become stiffer; never raises it. A step that the scene gives is
+    /// kept up to the critical one: beyond it friction turns the unstable modes into noise that no look at the energy
+    /// finds, and the packing comes out far too dense.
     fn adapt_dt(&mut self) {
         let critical = self.dynamics.critical_dt();
+        if self.scene.dt.is_some() && self.dynamics.dt() <= critical {
+            return;
+        }
         let safe = start::safe_dt(self.memory.dt_cap, critical);
         if safe < self.dynamics.dt() {
             self.dynamics.set_dt(safe);

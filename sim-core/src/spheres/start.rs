@@ -8,7 +8,7 @@ use crate::packing::spheres::{self as packing, Request};
 use crate::{Explanation, Options, Saving, SimError, Skip};
 
 /// Largest automatic time step [τ]: 0.05, 0.1 and 0.2 give the same e within seed scatter (docs/accuracy.md).
-const LARGEST_DT: f64 = 0.1;
+pub(crate) const LARGEST_DT: f64 = 0.1;
 /// Largest share of the critical time step of the present network that is used.
 const SAFETY: f64 = 0.7;
 /// Farthest a particle may fly in one step at the start [d].

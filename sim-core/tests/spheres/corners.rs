@@ -55,3 +55,18 @@ fn a_time_step_far_too_large_is_caught_retried_once_and_reported() {
     assert!(step <= 5000);
     assert!((retried_dt - 1.5).abs() < 1e-12);
 }
+
+#[test]
+fn a_time_step_above_the_limit_of_the_network_is_lowered_and_says_why() {
+    let run = |keys| run(&scene(&keys), &Options::default()).unwrap();
+    let expected = run(json!({ "max_steps": 20000 })).record.real("e").unwrap();
+    for dt in [0.4, 0.6] {
+        let outcome = run(json!({ "dt": dt, "max_steps": 20000 }));
+        let reason = outcome.record.text("dt_reason").unwrap();
+        assert!(reason.contains("stiffest mode"), "{reason}");
+        assert!(outcome.record.real("dt").unwrap() < 0.3);
+        // Scatter of 200 spheres between steps and seeds is 0.01; unnoticed, the step of 0.4 τ gave e = 0.88 for 1.35.
+        let e = outcome.record.real("e").unwrap();
+        assert!((e - expected).abs() < 0.04, "dt {dt}: {e} for {expected}");
+    }
+}
