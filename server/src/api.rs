@@ -2,6 +2,7 @@
 
 mod analysis;
 mod auth;
+mod disc_analysis;
 mod docs;
 mod events;
 mod extract;
@@ -59,6 +60,7 @@ fn routed() -> OpenApiRouter<App> {
         .routes(routes!(results::results))
         .routes(routes!(results::states))
         .merge(analysis::routes())
+        .merge(disc_analysis::routes())
         .routes(routes!(jobs::show))
         .routes(routes!(jobs::series))
         .routes(routes!(jobs::snapshot))

@@ -1,6 +1,7 @@
 //! Use cases: what the service can do, without HTTP and SQL words.
 
 mod analyse;
+mod analyse_discs;
 mod collect;
 mod expand;
 mod explain;
@@ -27,6 +28,7 @@ use crate::scheduler::lifecycle::Limits;
 use crate::store::Store;
 
 pub use analyse::Analysis;
+pub use analyse_discs::DiscAnalysis;
 pub use collect::{ResultQuery, RowStream};
 pub use filter::{Filter, Filters};
 pub use submit::{Submission, Submitted};

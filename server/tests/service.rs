@@ -6,6 +6,8 @@
 mod bad_input;
 #[path = "service/description.rs"]
 mod description;
+#[path = "service/discs.rs"]
+mod discs;
 #[path = "service/leases.rs"]
 mod leases;
 #[path = "service/model.rs"]

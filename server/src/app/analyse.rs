@@ -60,7 +60,7 @@ impl App {
         blocking(move || drawn(what, &runs)).await
     }
 
-    async fn analyst(&self) -> AppResult<tokio::sync::SemaphorePermit<'_>> {
+    pub(super) async fn analyst(&self) -> AppResult<tokio::sync::SemaphorePermit<'_>> {
         let closed = |_| AppError::Unavailable("the service is stopping".to_owned());
         self.0.analysts.acquire().await.map_err(closed)
     }
