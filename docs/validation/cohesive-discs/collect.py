@@ -1,0 +1,70 @@
+"""Collects the states of finished sweeps of cohesive discs from a coordinator.
+
+usage: collect.py SERVER NAME...        (for example collect.py http://127.0.0.1:8300 consolidation-2008)
+
+Writes beside this file
+  states.csv   one row per equilibrium state: scene, observables, residuals
+  forces.csv   P(F_N) of the states at P* = 0.01, 0.1, 1 and 13.3 on loading, mean over samples
+Only the standard library is needed.
+"""
+import collections
+import csv
+import json
+import pathlib
+import sys
+import urllib.request
+
+HERE = pathlib.Path(__file__).parent
+SCENE = ["n", "assembly", "mu_r", "seed"]
+STATE = ["state", "branch", "leg", "p", "phi", "z", "z_plus", "z_minus", "z_zero", "z_distant", "z_star",
+         "rattler_share", "x22", "mean_normal_force", "mean_normal_force_expected", "z2_ratio", "bulk", "shear",
+         "bulk_voigt", "shear_voigt", "bulk_reuss", "stiffness_sign", "fractal_dimension", "correlation_length",
+         "pore_radius", "contacts_kept", "contacts_lost", "contacts_gained", "converged", "sliding",
+         "residual_force", "residual_moment", "residual_stress", "residual_kinetic", "steps", "time"]
+RUN = ["scene_key", "kernel", "physics_version", "code_version"]
+PRESSURES = [0.01, 0.1, 1.0, 13.335214]
+
+
+def get(url):
+    with urllib.request.urlopen(url) as answer:
+        return answer.read().decode()
+
+
+def short(value):
+    return f"{value:.8g}" if isinstance(value, float) else "" if value is None else str(value)
+
+
+server, names = sys.argv[1].rstrip("/") + "/v1", set(sys.argv[2:])
+sweeps = [s for s in json.loads(get(f"{server}/sweeps"))["items"] if s["name"] in names]
+states, jobs = {}, {}
+for sweep in sweeps:
+    for line in get(f"{server}/sweeps/{sweep['id']}/states?format=ndjson").splitlines():
+        row = json.loads(line)
+        states[row["scene_key"], row["state"]] = row
+        jobs[row["scene_key"]] = row["job"]
+rows = sorted(states.values(), key=lambda r: (r["assembly"], r["mu_r"], r["n"], r["seed"], r["state"]))
+with open(HERE / "states.csv", "w", newline="") as file:
+    out = csv.writer(file, lineterminator="\n")
+    out.writerow(SCENE + STATE + RUN)
+    out.writerows([short(row.get(name)) for name in SCENE + STATE + RUN] for row in rows)
+
+bins = collections.defaultdict(list)
+for key, job in jobs.items():
+    tables = json.loads(get(f"{server}/jobs/{job}/snapshot"))
+    column = {c["name"]: c["values"] for c in tables["normal_forces"]["columns"]}
+    for state, force, density in zip(column["state"], column["normal_force"], column["density"]):
+        row = states[key, int(state)]
+        loading = row["branch"] in ("assembly", "compression")
+        if row["assembly"] == "cohesionless" or not loading:
+            continue
+        near = [p for p in PRESSURES if abs(row["p"] / p - 1) < 1e-3]
+        if near:
+            bins[row["assembly"], row["mu_r"], near[0], round(force, 9)].append(density)
+with open(HERE / "forces.csv", "w", newline="") as file:
+    out = csv.writer(file, lineterminator="\n")
+    out.writerow(["assembly", "mu_r", "p", "normal_force", "density", "samples"])
+    for (assembly, mu_r, p, force), densities in sorted(bins.items()):
+        mean = sum(densities) / len(densities)
+        if mean > 0:
+            out.writerow([assembly, mu_r, p, short(force), short(mean), len(densities)])
+print(f"{len(jobs)} runs, {len(rows)} states")

@@ -1,0 +1,188 @@
+"""Prints the tables of README.md from states.csv and draws forces.svg and coordination.svg. Standard library only."""
+import csv
+import math
+import pathlib
+import statistics
+
+HERE = pathlib.Path(__file__).parent
+with open(HERE / "states.csv") as file:
+    ROWS = [{k: (float(v) if k not in TEXT else v) for k, v in row.items() if v != ""}
+            for TEXT in [{"assembly", "branch", "converged", "scene_key", "kernel", "physics_version", "code_version"}]
+            for row in csv.DictReader(file)]
+PAPER = {  # Table II: phi at the lowest pressure, and its scatter
+    ("cohesionless", 0.0): (0.811, 0.001), ("type1", 0.0): (0.723, 0.001), ("type2", 0.0): (0.472, 0.008),
+    ("cohesionless", 0.005): (0.805, 0.002), ("type1", 0.005): (0.688, 0.001), ("type2", 0.005): (0.524, 0.008),
+}
+ORDER = [(a, m) for a in ("cohesionless", "type1", "type2") for m in (0.0, 0.005, 0.5)]
+
+
+def series(assembly, mu_r, n=1400):
+    return [r for r in ROWS if r["assembly"] == assembly and r["mu_r"] == mu_r and r["n"] == n]
+
+
+def mean(values):
+    values = list(values)
+    if not values:
+        return "-"
+    if len(values) == 1:
+        return f"{values[0]:.4g}"
+    return f"{statistics.fmean(values):.4f} ± {statistics.stdev(values) / math.sqrt(len(values)):.4f}"
+
+
+def at(rows, p, branches=("assembly", "compression")):
+    return [r for r in rows if abs(r["p"] / p - 1) < 1e-3 and r["branch"] in branches] if p else []
+
+
+print("## Φ at the lowest pressure (Table II): mean ± standard error\n")
+print("| assembling, μ_R/a | samples | Φ | paper | distance / standard error | z | z+ | z− | x0 | z* |")
+print("|---|---|---|---|---|---|---|---|---|---|")
+for key in ORDER:
+    rows = [r for r in series(*key) if r["branch"] == "assembly"]
+    if not rows:
+        continue
+    phi = [r["phi"] for r in rows]
+    paper = PAPER.get(key)
+    away = ""
+    if paper and len(phi) > 1:
+        # The paper's ± is the scatter of its samples (4 or 5): its mean has half of it as standard error.
+        error = math.hypot(statistics.stdev(phi) / math.sqrt(len(phi)), paper[1] / 2)
+        away = f"{(statistics.fmean(phi) - paper[0]) / error:+.1f}"
+    told = f"{paper[0]} ± {paper[1]}" if paper else ""
+    print(f"| {key[0]}, {key[1]:g} | {len(phi)} | {mean(phi)} | {told} | {away} | "
+          + " | ".join(mean(r[c] for r in rows) for c in ("z", "z_plus", "z_minus", "rattler_share", "z_star")) + " |")
+
+print("\n## The curve of type 2: mean ± standard error over samples\n")
+for mu_r in (0.0, 0.005, 0.5):
+    rows = series("type2", mu_r)
+    pressures = sorted({round(r["p"], 8) for r in rows if r["branch"] in ("assembly", "compression")})
+    if not pressures:
+        continue
+    print(f"### μ_R/a = {mu_r:g}\n")
+    print("| P* | samples | Φ | z | z+ | z− | B [K_N] | G [K_N] | B_V/B | B/B_R | ξ' [a] |")
+    print("|---|---|---|---|---|---|---|---|---|---|---|")
+    for p in pressures:
+        here = at(rows, p)
+        ok = [r for r in here if r.get("bulk")]
+        print(f"| {p:.4g} | {len(here)} | {mean(r['phi'] for r in here)} | {mean(r['z'] for r in here)} | "
+              f"{mean(r['z_plus'] for r in here)} | {mean(r['z_minus'] for r in here)} | "
+              f"{mean(r['bulk'] for r in ok)} | {mean(r['shear'] for r in ok)} | "
+              f"{mean(r['bulk_voigt'] / r['bulk'] for r in ok)} | "
+              f"{mean(r['bulk'] / r['bulk_reuss'] for r in ok if r.get('bulk_reuss'))} | "
+              f"{mean(r['pore_radius'] for r in here if 'pore_radius' in r)} |")
+    print()
+
+print("## Contacts from P* = 0.178 to 0.237 (Table IV)\n")
+print("| μ_R/a | samples | ΔΦ/Φ [%] | kept [%] | lost [%] | gained [%] |\n|---|---|---|---|---|---|")
+for mu_r in (0.0, 0.005, 0.5):
+    rows = series("type2", mu_r)
+    first = {r["seed"]: r for r in at(rows, 0.17782794)}
+    second = {r["seed"]: r for r in at(rows, 0.23713737)}
+    both = sorted(first.keys() & second.keys())
+    if both:
+        before = {s: second[s]["contacts_kept"] + second[s]["contacts_lost"] for s in both}
+        part = lambda name: mean(100 * second[s][name] / before[s] for s in both)
+        change = mean(100 * (second[s]["phi"] / first[s]["phi"] - 1) for s in both)
+        print(f"| {mu_r:g} | {len(both)} | {change} | {part('contacts_kept')} | {part('contacts_lost')} | {part('contacts_gained')} |")
+
+print("\n## Structure of type 2\n")
+print("| μ_R/a | P* | samples with a fractal range | d_F | ξ [a] | ξ' [a] |\n|---|---|---|---|---|---|")
+for mu_r in (0.0, 0.005, 0.5):
+    for p, rows in [(0, [r for r in series("type2", mu_r) if r["branch"] == "rest"]),
+                    (0.01, at(series("type2", mu_r), 0.01))]:
+        if rows:
+            fractal = [r for r in rows if "fractal_dimension" in r]
+            print(f"| {mu_r:g} | {p} | {len(fractal)} of {len(rows)} | {mean(r['fractal_dimension'] for r in fractal)} | "
+                  f"{mean(r['correlation_length'] for r in fractal)} | {mean(r['pore_radius'] for r in rows if 'pore_radius' in r)} |")
+bad = [r for r in ROWS if r["converged"] not in ("True", "true")]
+print(f"\n{len(ROWS)} states, {len(bad)} not converged, "
+      f"{sum(r['stiffness_sign'] != 1 for r in ROWS if 'stiffness_sign' in r)} whose stiffness matrix is not positive definite, "
+      f"{sum(r['bulk'] > r['bulk_voigt'] for r in ROWS if 'bulk' in r)} above the Voigt bound")
+
+COLORS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7"]
+
+
+class Plot:
+    """One panel 560 × 400 as SVG text, x linear or logarithmic."""
+
+    def __init__(self, title, xlabel, ylabel, xs, ys, logx=False, logy=False):
+        self.fx, self.fy = (math.log10 if logx else float), (math.log10 if logy else float)
+        self.logx, self.logy = logx, logy
+        self.x0, self.x1 = self.fx(min(xs)), self.fx(max(xs))
+        self.y0, self.y1 = self.fy(min(ys)), self.fy(max(ys))
+        pad = 0.04 * (self.y1 - self.y0)
+        self.y0, self.y1 = self.y0 - pad, self.y1 + pad
+        self.parts = [f'<text x="330" y="22" text-anchor="middle" font-size="15">{title}</text>',
+                      f'<text x="330" y="436" text-anchor="middle">{xlabel}</text>',
+                      f'<text x="16" y="215" text-anchor="middle" transform="rotate(-90 16 215)">{ylabel}</text>',
+                      '<rect x="70" y="35" width="520" height="360" fill="none" stroke="#444"/>']
+        for value in self.ticks(self.x0, self.x1, logx):
+            x = self.px(value)
+            label = f"{10 ** value:g}" if logx else f"{value:g}"
+            self.parts += [f'<line x1="{x:.1f}" y1="395" x2="{x:.1f}" y2="390" stroke="#444"/>',
+                           f'<text x="{x:.1f}" y="412" text-anchor="middle">{label}</text>']
+        for value in self.ticks(self.y0, self.y1, logy):
+            y = self.py(value)
+            label = f"{10 ** value:g}" if logy else f"{value:g}"
+            self.parts += [f'<line x1="70" y1="{y:.1f}" x2="75" y2="{y:.1f}" stroke="#444"/>',
+                           f'<text x="64" y="{y + 4:.1f}" text-anchor="end">{label}</text>']
+        self.names = 0
+
+    @staticmethod
+    def ticks(low, high, log):
+        step = 1.0 if log else 10 ** math.floor(math.log10((high - low) / 3))
+        if not log and (high - low) / step > 8:
+            step *= 2 if (high - low) / step <= 14 else 5
+        first = math.ceil(low / step - 1e-9)
+        return [round(k * step, 9) for k in range(first, math.floor(high / step + 1e-9) + 1)]
+
+    def px(self, value):
+        return 70 + 520 * (value - self.x0) / (self.x1 - self.x0)
+
+    def py(self, value):
+        return 395 - 360 * (value - self.y0) / (self.y1 - self.y0)
+
+    def line(self, name, points, color, dots=True):
+        at = [(self.px(self.fx(x)), self.py(self.fy(y))) for x, y in points if not self.logy or y > 0]
+        self.parts.append(f'<polyline fill="none" stroke="{color}" stroke-width="1.5" points="'
+                          + " ".join(f"{x:.1f},{y:.1f}" for x, y in at) + '"/>')
+        if dots:
+            self.parts += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.5" fill="{color}"/>' for x, y in at]
+        y = 52 + 16 * self.names
+        self.parts += [f'<line x1="440" y1="{y}" x2="464" y2="{y}" stroke="{color}" stroke-width="2"/>',
+                       f'<text x="470" y="{y + 4}">{name}</text>']
+        self.names += 1
+
+    def save(self, name):
+        (HERE / name).write_text('<svg xmlns="http://www.w3.org/2000/svg" width="610" height="446" '
+                                 'font-family="sans-serif" font-size="12"><rect width="100%" height="100%" fill="#fff"/>\n'
+                                 + "\n".join(self.parts) + "\n</svg>\n")
+
+
+def curve(rows, column):
+    pressures = sorted({round(r["p"], 8) for r in rows if r["branch"] in ("assembly", "compression")})
+    return [(p, statistics.fmean(r[column] for r in at(rows, p))) for p in pressures]
+
+
+curves = [(f"μR/a = {m:g}", curve(series("type2", m), "z")) for m in (0.0, 0.005, 0.5) if series("type2", m)]
+every = [point for _, points in curves for point in points]
+plot = Plot("Coordination number on first loading, type 2", "P* = aP/F0", "z",
+            [x for x, _ in every], [y for _, y in every], logx=True)
+for (name, points), color in zip(curves, COLORS):
+    plot.line(name, points, color)
+plot.save("coordination.svg")
+
+with open(HERE / "forces.csv") as file:
+    FORCES = [r for r in csv.DictReader(file) if r["assembly"] == "type2" and float(r["mu_r"]) == 0.005]
+curves = []
+for p in sorted({float(r["p"]) for r in FORCES}):
+    scale = max(1.0, p)
+    curves.append((f"P* = {p:.3g}", [(float(r["normal_force"]) / scale, float(r["density"]) * scale)
+                                     for r in FORCES if float(r["p"]) == p]))
+curves = [(name, [(x, y) for x, y in points if abs(x) < 6]) for name, points in curves]
+every = [point for _, points in curves for point in points]
+if every:
+    plot = Plot("Normal forces, type 2, μR/a = 0.005", "F_N / max(F0, Pa)", "density",
+                [x for x, _ in every], [y for _, y in every], logy=True)
+    for (name, points), color in zip(curves, COLORS):
+        plot.line(name, points, color, dots=False)
+    plot.save("forces.svg")
