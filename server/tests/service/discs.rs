@@ -6,8 +6,8 @@ use crate::support::Coordinator;
 
 /// A state of a made-up sample that follows eq. (9) with the parameters of Table III for small rolling resistance.
 fn state(p: f64, seed: u64) -> Value {
-    let (p0, phi0, lambda, alpha, p1) = (0.0316, 0.515, 0.194, 1.08, 0.9);
-    let ratio = p / p0 * (1.0 - (-(p1 / p as f64).powf(alpha)).exp()).powf(1.0 / alpha);
+    let (p0, phi0, lambda, alpha, p1): (f64, f64, f64, f64, f64) = (0.0316, 0.515, 0.194, 1.08, 0.9);
+    let ratio = p / p0 * (1.0 - (-(p1 / p).powf(alpha)).exp()).powf(1.0 / alpha);
     let inverse = 1.0 / phi0 - lambda * f64::ln(ratio) + 1e-3 * (seed as f64 - 2.0);
     json!({
         "p": p, "phi": 1.0 / inverse, "z": 3.0, "branch": if p < 0.011 { "assembly" } else { "compression" },
