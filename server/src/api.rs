@@ -11,6 +11,7 @@ mod jobs;
 mod leases;
 mod negotiate;
 mod observe;
+mod plastic_analysis;
 mod points;
 mod problem;
 mod results;
@@ -61,6 +62,7 @@ fn routed() -> OpenApiRouter<App> {
         .routes(routes!(results::states))
         .merge(analysis::routes())
         .merge(disc_analysis::routes())
+        .merge(plastic_analysis::routes())
         .routes(routes!(jobs::show))
         .routes(routes!(jobs::series))
         .routes(routes!(jobs::snapshot))

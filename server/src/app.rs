@@ -2,6 +2,7 @@
 
 mod analyse;
 mod analyse_discs;
+mod analyse_plastic;
 mod collect;
 mod expand;
 mod explain;
@@ -29,6 +30,7 @@ use crate::store::Store;
 
 pub use analyse::Analysis;
 pub use analyse_discs::DiscAnalysis;
+pub use analyse_plastic::PlasticAnalysis;
 pub use collect::{ResultQuery, RowStream};
 pub use filter::{Filter, Filters};
 pub use submit::{Submission, Submitted};

@@ -12,6 +12,8 @@ mod discs;
 mod leases;
 #[path = "service/model.rs"]
 mod model;
+#[path = "service/plastic.rs"]
+mod plastic;
 #[path = "service/sharing.rs"]
 mod sharing;
 #[path = "service/support.rs"]

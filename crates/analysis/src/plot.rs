@@ -17,7 +17,7 @@ pub use collapse::{collapse_svg, master_svg, plateau_svg, raw_svg};
 pub use discs::{consolidation_svg, moduli_svg, structure_svg};
 pub use exponents::exponents_svg;
 pub use forces::{distribution_svg, forces_svg};
-pub use plastic::{compaction_svg, coordination_svg};
+pub use plastic::{compaction_svg, coordination_svg, curvature_svg, stress_strain_svg};
 pub use profile::{profile_svg, variation_svg};
 
 #[cfg(test)]

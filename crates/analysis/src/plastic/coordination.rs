@@ -164,7 +164,7 @@ mod tests {
             })
             .collect();
         let material = Material { young: 10e6, nu: 0.45, sigma_y: 0.4e6, h: None };
-        PlasticCurve { id: String::new(), material, seed, states }
+        PlasticCurve { id: String::new(), setup: "assembly".to_owned(), material, seed, states }
     }
 
     #[test]

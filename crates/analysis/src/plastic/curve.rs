@@ -20,8 +20,16 @@ pub struct PlasticState {
     pub z: Option<f64>,
     /// Plastic share f_p [1].
     pub f_p: Option<f64>,
-    /// Mean largest curvature over the mean curvature of the undeformed discs, κ⟨d⟩ [1].
+    /// Mean largest curvature times the mean diameter, κ⟨d⟩ [1].
     pub kappa_d: Option<f64>,
+    /// Nominal strain 1 − h/h_i [1].
+    pub strain_nominal: Option<f64>,
+    /// Force over the width of the contact with the bottom wall [Pa].
+    pub sigma_contact: Option<f64>,
+    /// Mean −σ_yy over the volume [Pa].
+    pub sigma_volume: Option<f64>,
+    /// −σ_yy at the centre of the first disc [Pa].
+    pub sigma_centre: Option<f64>,
 }
 
 /// One run.
@@ -30,6 +38,8 @@ pub struct PlasticState {
 pub struct PlasticCurve {
     /// Scene key or job id.
     pub id: String,
+    /// What was compressed: `assembly`, `diametrical`, `cell`.
+    pub setup: String,
     /// Material.
     pub material: Material,
     /// Seed.
@@ -59,6 +69,7 @@ impl PlasticCurve {
             reason = "seeds are small whole numbers"
         )]
         let seed = run.real("seed").unwrap_or(1.0) as u64;
+        let stress = |row: &Row, name: &str| row.real(name).map(|value| value * young);
         let state = |row: &Row| {
             Some(PlasticState {
                 phi: row.real("phi").filter(|phi| *phi > 0.0)?,
@@ -67,6 +78,10 @@ impl PlasticCurve {
                 z: row.real("z"),
                 f_p: row.real("f_p"),
                 kappa_d: row.real("kappa_d"),
+                strain_nominal: row.real("strain"),
+                sigma_contact: stress(row, "sigma_contact"),
+                sigma_volume: stress(row, "sigma_volume"),
+                sigma_centre: stress(row, "sigma_centre"),
             })
         };
         Self {
@@ -75,6 +90,7 @@ impl PlasticCurve {
                 .find_map(|column| run.text(column))
                 .unwrap_or_default()
                 .to_owned(),
+            setup: run.text("setup").unwrap_or("assembly").to_owned(),
             material,
             seed,
             states: states.iter().filter_map(state).collect(),

@@ -3,7 +3,7 @@
 use super::axis::{Axis, Scale};
 use super::collapse::with_error;
 use super::figure::{Dash, Dot, Figure, Fill, INK, Layer, MARKERS, MUTED, PALETTE, Panel, Sample};
-use crate::plastic::{Compaction, Coordination, PlasticState};
+use crate::plastic::{Compaction, Coordination, PlasticCurve, PlasticState};
 
 /// Stress against Φ (left) and excess strain (right), points with the fitted model (lines) and the paper's constants.
 #[must_use]
@@ -113,6 +113,81 @@ pub fn coordination_svg(coordination: &Coordination) -> String {
             layers,
         }],
         legend: vec![row],
+    }
+    .svg()
+}
+
+/// κ⟨d⟩ (left) and Φ (right) against stress.
+#[must_use]
+pub fn curvature_svg(compaction: &Compaction) -> String {
+    let (mut row, mut kappas, mut phis) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut stresses, mut sharpest, mut densest) = (Vec::new(), Vec::new(), Vec::new());
+    for (i, curve) in compaction.curves.iter().enumerate() {
+        let (color, marker) = (PALETTE[i % PALETTE.len()], MARKERS[i % MARKERS.len()]);
+        let dots = |y: &dyn Fn(&PlasticState) -> Option<f64>| -> Vec<Dot> {
+            let dot = |state: &PlasticState| Some(Dot { x: state.sigma / 1e6, y: y(state)?, error: None });
+            curve.states.iter().filter(|state| state.sigma > 0.0).filter_map(dot).collect()
+        };
+        let (kappa, phi) = (dots(&|state| state.kappa_d), dots(&|state| Some(state.phi)));
+        stresses.extend(phi.iter().map(|dot| dot.x));
+        sharpest.extend(kappa.iter().map(|dot| dot.y));
+        densest.extend(phi.iter().map(|dot| dot.y));
+        kappas.push(Layer::Points { color, marker, fill: Fill::Open, dots: kappa });
+        phis.push(Layer::Points { color, marker, fill: Fill::Open, dots: phi });
+        row.push((Sample::Point(color, marker, Fill::Open), curve.name.clone()));
+    }
+    let stress = || Axis::around("stress σ [MPa]", Scale::Linear, stresses.iter().copied());
+    Figure {
+        title: "Shape and solid fraction under stress".to_owned(),
+        panels: vec![
+            Panel {
+                x: stress(),
+                y: Axis::around("mean largest curvature κ⟨d⟩", Scale::Linear, sharpest.into_iter()),
+                layers: kappas,
+            },
+            Panel {
+                x: stress(),
+                y: Axis::around("solid fraction Φ", Scale::Linear, densest.into_iter()),
+                layers: phis,
+            },
+        ],
+        legend: vec![row],
+    }
+    .svg()
+}
+
+/// Four definitions of stress of single discs against nominal strain.
+#[must_use]
+pub fn stress_strain_svg(curves: &[PlasticCurve]) -> String {
+    type Stress = fn(&PlasticState) -> Option<f64>;
+    const DEFINITIONS: [(&str, Stress); 4] = [
+        ("F/D [MPa]", |state| Some(state.sigma)),
+        ("F/contact width [MPa]", |state| state.sigma_contact),
+        ("volume mean of −σyy [MPa]", |state| state.sigma_volume),
+        ("−σyy at the centre [MPa]", |state| state.sigma_centre),
+    ];
+    let style = |i: usize| (PALETTE[i % PALETTE.len()], MARKERS[i % MARKERS.len()]);
+    let panel = |(label, stress): (&str, Stress)| {
+        let (mut xs, mut ys, mut layers) = (Vec::new(), Vec::new(), Vec::new());
+        for (i, curve) in curves.iter().enumerate() {
+            let points: Vec<(f64, f64)> = curve
+                .states
+                .iter()
+                .filter_map(|state| Some((state.strain_nominal?, stress(state)? / 1e6)))
+                .collect();
+            xs.extend(points.iter().map(|point| point.0));
+            ys.extend(points.iter().map(|point| point.1));
+            layers.push(Layer::Line { color: style(i).0, dash: Dash::Solid, points });
+        }
+        let x = Axis::around("strain 1 − h/D", Scale::Linear, xs.into_iter().chain([0.0]));
+        Panel { x, y: Axis::around(label, Scale::Linear, ys.into_iter().chain([0.0])), layers }
+    };
+    let entry =
+        |(i, curve): (usize, &PlasticCurve)| (Sample::Line(style(i).0, Dash::Solid), curve.name().clone());
+    Figure {
+        title: "One disc between walls: four definitions of stress".to_owned(),
+        panels: DEFINITIONS.map(panel).into(),
+        legend: vec![curves.iter().enumerate().map(entry).collect()],
     }
     .svg()
 }

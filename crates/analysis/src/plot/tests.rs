@@ -117,12 +117,25 @@ fn pictures_of_plastic_discs_are_drawn() {
                 let sigma = Constants::PAPER.sigma(&material, phi, z) * (1.02 + 0.03 * wave);
                 let sigma = if phi < 0.79999 { 0.0 } else { sigma.max(2e3) };
                 let f_p = h.map(|_| Constants::PAPER.plastic_share(phi));
-                PlasticState { phi, sigma, strain: Some((phi / 0.74).ln()), z: Some(z), f_p, kappa_d: None }
+                PlasticState {
+                    phi,
+                    sigma,
+                    strain: Some((phi / 0.74).ln()),
+                    z: Some(z),
+                    f_p,
+                    kappa_d: Some(2.1 + 10.0 * (phi - 0.77)),
+                    strain_nominal: Some(1.0 - 0.74 / phi),
+                    sigma_contact: Some(2.0 * sigma),
+                    sigma_volume: Some(1.1 * sigma),
+                    sigma_centre: Some(1.5 * sigma),
+                }
             })
             .collect();
-        PlasticCurve { id: String::new(), material, seed: 1, states }
+        PlasticCurve { id: String::new(), setup: "assembly".to_owned(), material, seed: 1, states }
     };
     let curves: Vec<PlasticCurve> = [None, Some(0.0), Some(1e6), Some(3e6)].into_iter().map(run).collect();
     check("compaction", &compaction_svg(&compaction(&curves, &CompactionOptions::default()).unwrap()));
     check("coordination", &coordination_svg(&coordination(&curves).unwrap()));
+    check("curvature", &curvature_svg(&compaction(&curves, &CompactionOptions::default()).unwrap()));
+    check("stress-strain", &stress_strain_svg(&curves));
 }

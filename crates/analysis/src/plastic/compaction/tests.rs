@@ -23,10 +23,17 @@ fn run(h: Option<f64>, noise: f64, seed: u64) -> PlasticCurve {
             // jamming is a step: the wall bears 1.5 kPa at once
             let sigma = if phi < 0.79999 { 0.0 } else { (exact + normal.sample(&mut rng)).max(1.5e3) };
             let f_p = h.map(|_| constants.plastic_share(phi));
-            PlasticState { phi, sigma, strain: Some((phi / 0.74).ln()), z: Some(z), f_p, kappa_d: None }
+            PlasticState {
+                phi,
+                sigma,
+                strain: Some((phi / 0.74).ln()),
+                z: Some(z),
+                f_p,
+                ..PlasticState::default()
+            }
         })
         .collect();
-    PlasticCurve { id: "run".to_owned(), material, seed, states }
+    PlasticCurve { id: "run".to_owned(), setup: "assembly".to_owned(), material, seed, states }
 }
 
 #[test]
