@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::fit::{Datum, Sigma, least_squares};
 use crate::point::count;
-use crate::{Estimate, Fit, FitError};
+use crate::{Determined, Estimate, Fit, FitError};
 
 const WHAT: &str = "plateau (15)";
 
@@ -53,8 +53,9 @@ pub struct PlateauFit {
     pub delta_e: Estimate,
     /// C [1].
     pub c: Estimate,
-    /// p0: the pressure where Δe = 1, from (16) [Pa]. The paper takes it as 0.01 MPa.
-    pub p0: Estimate,
+    /// p0: the pressure where Δe = 1, from (16) [Pa]. The paper takes it as 0.01 MPa. Undetermined where the interval
+    /// of C reaches zero: without a slope the plateau comes to Δe = 1 nowhere.
+    pub p0: Determined<Estimate>,
     /// The fit: parameters delta_e, c; abscissa p [Pa], ordinate e_max [1].
     pub fit: Fit,
 }
@@ -107,8 +108,21 @@ pub(crate) fn fit(levels: &[Level], e_min: f64, e_min_se: f64, p_delta: f64) -> 
     if delta.value <= 0.0 {
         return Err(FitError::underdetermined(WHAT, format!("Δe = {:.3} is not positive", delta.value)));
     }
-    // (16) solved for p0: ln(p0/p_Δ) = (1 − 1/Δe)/C; its interval is that of the logarithm
-    let p0 = fit.derived(|t| (1.0 - 1.0 / t[0]) / t[1] + p_delta.ln()).exp();
+    let p0 = if c.ci95[0] <= 0.0 {
+        let reason =
+            format!("C = {:.3} ({:.3} … {:.3}) does not exclude zero", c.value, c.ci95[0], c.ci95[1]);
+        Err(FitError::underdetermined(WHAT, reason))
+    } else {
+        // (16) solved for p0: ln(p0/p_Δ) = (1 − 1/Δe)/C; its interval is that of the logarithm
+        let p0 = fit.derived(|t| (1.0 - 1.0 / t[0]) / t[1] + p_delta.ln()).exp();
+        // with C barely above zero the end of the interval may be beyond every number
+        if p0.ci95.iter().all(|end| end.is_finite()) {
+            Ok(p0)
+        } else {
+            Err(FitError::underdetermined(WHAT, format!("the interval of p0 ends beyond {:e} Pa", f64::MAX)))
+        }
+    }
+    .into();
     Ok(PlateauFit { p_delta, e_min, delta_e: delta, c, p0, fit })
 }
 

@@ -10,6 +10,25 @@ fn exact(p: f64) -> f64 {
     e_max(p, E_MIN, 1.0, 0.24, P0).unwrap()
 }
 
+fn p0(fitted: &PlateauFit) -> f64 {
+    fitted.p0.value().unwrap().value
+}
+
+/// A plateau that does not fall with p reaches Δe = 1 nowhere; its answer is still plain JSON, without nulls.
+#[test]
+fn a_flat_plateau_has_no_p0_and_says_so() {
+    let levels: Vec<Level> = [1e4, 5e4, 1e5, 1e6]
+        .iter()
+        .zip([0.001, -0.0012, 0.0004, 0.0003])
+        .map(|(&p, noise)| Level { p, e_max: 1.45 + noise, se: 0.01 })
+        .collect();
+    let fitted = fit(&levels, 0.89, 0.003, 1e5).unwrap();
+    assert!(fitted.p0.reason().unwrap().contains("does not exclude zero"), "{:?}", fitted.p0);
+    let text = serde_json::to_string(&fitted).unwrap();
+    assert!(!text.contains("null"), "{text}");
+    assert_eq!(serde_json::from_str::<PlateauFit>(&text).unwrap(), fitted);
+}
+
 #[test]
 fn formula_at_the_papers_points() {
     // p_Δ = 10 p0: Δe = 0.64, e_max(0.1 MPa) = 1.40 (text below eq. 16)
@@ -42,9 +61,9 @@ fn the_fit_is_invariant_under_the_choice_of_p_delta() {
         let other = fit(&levels, E_MIN, 0.003, p_delta).unwrap();
         assert!((other.c.value - reference.c.value).abs() < 1e-6);
         assert!((other.c.se / reference.c.se - 1.0).abs() < 1e-3);
-        assert!((other.p0.value / reference.p0.value - 1.0).abs() < 1e-5);
+        assert!((p0(&other) / p0(&reference) - 1.0).abs() < 1e-5);
         // (16) ties the two Δe
-        assert!((delta_e(other.c.value, p_delta, other.p0.value) - other.delta_e.value).abs() < 1e-8);
+        assert!((delta_e(other.c.value, p_delta, p0(&other)) - other.delta_e.value).abs() < 1e-8);
         for p in [2e4, 3e5] {
             let (a, b) = (other.predict(p).unwrap(), reference.predict(p).unwrap());
             assert!((a.value - b.value).abs() < 1e-7 && (a.se / b.se - 1.0).abs() < 1e-2);
@@ -79,7 +98,7 @@ fn recovers_known_parameters_within_the_stated_interval() {
         let fitted = fit(&levels, E_MIN, 0.0, 5e4).unwrap();
         c_hits += u32::from(fitted.c.covers(0.24));
         delta_hits += u32::from(fitted.delta_e.covers(delta_e(0.24, 5e4, P0)));
-        p0_hits += u32::from(fitted.p0.covers(P0));
+        p0_hits += u32::from(fitted.p0.value().unwrap().covers(P0));
     }
     for (name, hits) in [("C", c_hits), ("delta_e", delta_hits), ("p0", p0_hits)] {
         assert!((180..=200).contains(&hits), "{name}: {hits} of 200");
