@@ -301,8 +301,7 @@ fn refine(levels: &mut Levels, base: &[&Point], options: &CollapseOptions) {
     let (points, _) = master_points(base, &moved);
     let Ok(core) = master::fit_points(&points, known, Some(core.curve)) else { return };
     let free = vec![None; high.len()];
-    let Some(joint) = joint::covariance(&joint_points, known, low, &high, &free, &core.curve, &core.used)
-    else {
+    let Some(joint) = joint::covariance(&joint_points, known, low, &high, &free, &core.curve) else {
         return;
     };
     let dof = count(joint_points.len()) - count(high.len() + 5);
@@ -347,7 +346,7 @@ impl Collapse {
             .map(|plateau| (plateau.source == PlateauSource::Fit).then_some(plateau.e_max.se))
             .collect();
         let sigma = if known { Sigma::Absolute } else { Sigma::Relative };
-        joint::covariance(&points, sigma, self.e_min.estimate.value, &e_max, &prior, &core.curve, &core.used)
+        joint::covariance(&points, sigma, self.e_min.estimate.value, &e_max, &prior, &core.curve)
     }
 
     /// Points for the master curve, with e_min and one plateau moved by the given amounts.

@@ -27,7 +27,7 @@ pub(crate) struct Joint {
     pub e_min_se: f64,
     /// Standard error of each plateau.
     pub e_max_se: Vec<f64>,
-    /// Covariance of (ln a, α, ln b, β) as the log–log fit gives them.
+    /// Covariance of (ln a, α, ln b, β).
     pub curve: Vec<Vec<f64>>,
 }
 
@@ -65,11 +65,7 @@ pub(crate) fn polish(
 }
 
 /// Linearises at the given levels and curve. `prior` holds the standard error of a plateau that came from (15) and is
-/// therefore no free parameter; `in_curve` says which points the log–log fit used. Nothing when the model is rank
-/// deficient on these points.
-///
-/// The levels respond to the data as the joint least squares does; the curve responds to the data both directly,
-/// through the weighted fit of ln s, and through the levels. Its covariance is that of this sum.
+/// therefore no free parameter. Nothing when the model is rank deficient on these points.
 pub(crate) fn covariance(
     points: &[JointPoint],
     known: Sigma,
@@ -77,7 +73,6 @@ pub(crate) fn covariance(
     e_max: &[f64],
     prior: &[Option<f64>],
     curve: &MasterCurve,
-    in_curve: &[bool],
 ) -> Option<Joint> {
     let levels = 1 + e_max.len();
     let size = levels + 4;
@@ -89,7 +84,6 @@ pub(crate) fn covariance(
     let priors: Vec<(usize, f64)> =
         prior.iter().enumerate().filter_map(|(k, se)| se.filter(|se| *se > 0.0).map(|se| (k, se))).collect();
     let mut rows = DMatrix::<f64>::zeros(n + priors.len(), size);
-    let mut slopes = DMatrix::<f64>::zeros(n, 4);
     let mut chi2 = 0.0;
     for (i, point) in points.iter().enumerate() {
         let e_r = curve.e_r(point.eta_star);
@@ -97,7 +91,6 @@ pub(crate) fn covariance(
         rows[(i, 0)] = (1.0 - e_r) / point.sigma;
         rows[(i, 1 + point.plateau)] = e_r / point.sigma;
         for (k, slope) in e_r_slopes(point.eta_star, curve).into_iter().enumerate() {
-            slopes[(i, k)] = slope;
             rows[(i, levels + k)] = span * slope / point.sigma;
         }
         chi2 += ((point.e - e_min - e_r * span) / point.sigma).powi(2);
@@ -108,13 +101,12 @@ pub(crate) fn covariance(
         rows[(n + row, 1 + k)] = scale.sqrt() / se;
     }
     let response = pseudo_inverse(&rows)?;
-    let by_data = curve_response(points, e_min, e_max, curve, in_curve, &slopes, &response)?;
-    let curve_covariance = scale * &by_data * by_data.transpose();
-    let level_covariance = scale * &response * response.transpose();
+    let covariance = scale * &response * response.transpose();
+    let element = |i: usize, j: usize| covariance[(levels + i, levels + j)];
     Some(Joint {
-        e_min_se: level_covariance[(0, 0)].sqrt(),
-        e_max_se: (1..levels).map(|i| level_covariance[(i, i)].sqrt()).collect(),
-        curve: (0..4).map(|i| (0..4).map(|j| curve_covariance[(i, j)]).collect()).collect(),
+        e_min_se: covariance[(0, 0)].sqrt(),
+        e_max_se: (1..levels).map(|i| covariance[(i, i)].sqrt()).collect(),
+        curve: (0..4).map(|i| (0..4).map(|j| element(i, j)).collect()).collect(),
     })
 }
 
@@ -144,35 +136,4 @@ fn pseudo_inverse(rows: &DMatrix<f64>) -> Option<DMatrix<f64>> {
         inverse.row_mut(j).unscale_mut(*length);
     }
     Some(inverse)
-}
-
-/// d(ln a, α, ln b, β)/d(data in units of σ): the weighted fit of y = ln((e_max − e)/(e − e_min)), with levels that
-/// move with the data.
-fn curve_response(
-    points: &[JointPoint],
-    e_min: f64,
-    e_max: &[f64],
-    curve: &MasterCurve,
-    in_curve: &[bool],
-    slopes: &DMatrix<f64>,
-    response: &DMatrix<f64>,
-) -> Option<DMatrix<f64>> {
-    let n = points.len();
-    // ∂y/∂θ and dy/d(data), both in units of σ_y = σ/(span e_r(1 − e_r)); dy/de = −1/(span e_r(1 − e_r))
-    let mut design = DMatrix::<f64>::zeros(n, 4);
-    let mut moved = DMatrix::<f64>::zeros(n, response.ncols());
-    for (i, point) in points.iter().enumerate().filter(|(i, _)| in_curve[*i]) {
-        let e_r = curve.e_r(point.eta_star);
-        let span = e_max[point.plateau] - e_min;
-        for k in 0..4 {
-            design[(i, k)] = -slopes[(i, k)] * span / point.sigma;
-        }
-        // ∂y/∂e_min = 1/(e − e_min), ∂y/∂e_max = 1/(e_max − e), at the model's e
-        let (by_min, by_max) = ((1.0 - e_r) / point.sigma, e_r / point.sigma);
-        for j in 0..response.ncols() {
-            moved[(i, j)] = by_min * response[(0, j)] + by_max * response[(1 + point.plateau, j)];
-        }
-        moved[(i, i)] -= 1.0;
-    }
-    Some(pseudo_inverse(&design)? * moved)
 }

@@ -1,8 +1,13 @@
 //! The master curve (30)/(31).
 //!
-//! s = (1 − e_r)/e_r = 1/(a x^α + b x^β) with x = η*/0.045, fitted in log–log for the four numbers the data
+//! s = (1 − e_r)/e_r = 1/(a x^α + b x^β) with x = η*/0.045, fitted for the four numbers the data
 //! determine: ln a, α, ln b, β. The paper's A and s_m depend on the η*_m one quotes them at:
 //! A = a (η*_m/0.045)^α, 1/s_m − A = b (η*_m/0.045)^β.
+//!
+//! The residual is that of e_r = 1/(1 + s), divided by its standard deviation. To first order in the noise this is the
+//! log–log fit of s with the weights that the noise of e gives to ln s, e_r(1 − e_r)/σ. Beyond first order it is the
+//! better one: the noise is in e; ln s of a point near an end is skewed, and beyond the end there is none, so that a
+//! log–log fit has to leave out points by their own noise.
 
 use serde::{Deserialize, Serialize};
 
@@ -14,8 +19,6 @@ pub const ETA_STAR_M: f64 = 0.045;
 
 const WHAT: &str = "master curve (30)";
 const NAMES: [&str; 4] = ["ln_a", "alpha", "ln_b", "beta"];
-/// Points closer than this many standard deviations to e_r = 0 or 1 have no usable logarithm of s.
-const CLEAR_OF_ENDS: f64 = 2.0;
 
 /// The four numbers of (30), at x = η*/0.045.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -90,7 +93,7 @@ pub struct CurveSample {
 pub struct MasterFit {
     /// The curve.
     pub curve: MasterCurve,
-    /// The fit in ln s: parameters ln_a, alpha, ln_b, beta; abscissa η*, ordinate ln s. The covariance holds the
+    /// The fit: parameters ln_a, alpha, ln_b, beta; abscissa η*, ordinate e_r. The covariance holds the
     /// scatter of the points and the uncertainty of e_min and of every plateau.
     pub fit: Fit,
     /// Prefactor of the dense regime at η* = 0.045 [1].
@@ -105,8 +108,6 @@ pub struct MasterFit {
     pub at_paper: Quoted,
     /// A and s_m at the crossover of the two asymptotes, where a x^α = b x^β.
     pub at_crossover: Quoted,
-    /// Points of the collapse that were not used, because e_r is within two standard deviations of 0 or 1.
-    pub too_close_to_an_end: usize,
     /// Standard deviation of e_r of a point of weight one, from replicates or from the residuals [1].
     pub e_r_sigma: f64,
     /// The curve, sampled over the range of the data.
@@ -125,43 +126,38 @@ pub(crate) struct MasterPoint {
 pub(crate) struct Core {
     pub fit: Fit,
     pub curve: MasterCurve,
-    /// Which points were used.
-    pub used: Vec<bool>,
+    /// Standard deviation of e_r of a point of weight one.
     pub sigma: f64,
 }
 
-/// Fits ln s with weights e_r(1 − e_r)/σ taken from the curve itself (not from the noisy point), reweighted until
-/// they stand still. Without replicates σ is the common scatter, found from the residuals.
+/// Least squares of e_r. Without replicates σ is the common scatter, found from the residuals.
 pub(crate) fn fit_points(
     points: &[MasterPoint],
     known: Sigma,
     start: Option<MasterCurve>,
 ) -> Result<Core, FitError> {
-    let mut curve = start.unwrap_or(MasterCurve::PAPER);
-    let mut unit = match known {
-        Sigma::Absolute => 1.0,
-        Sigma::Relative => 0.01,
-    };
-    let mut first = true;
-    for _ in 0..12 {
-        let (data, _) = select(points, &curve, unit);
-        let fit = robust_start(&data, curve, first)?;
-        first = false;
-        let found = ordered(MasterCurve::of_theta(&fit.values()));
-        let moved = found.theta().iter().zip(curve.theta()).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
-        curve = found;
-        let mut still = moved < 1e-6;
-        if known == Sigma::Relative {
-            let scaled = (unit * fit.reduced_chi2.sqrt()).max(1e-9);
-            still &= (scaled / unit - 1.0).abs() < 1e-3;
-            unit = scaled;
-        }
-        if still {
-            break;
+    let data: Vec<Datum> = points
+        .iter()
+        .filter(|point| point.eta_star > 0.0)
+        .map(|point| Datum { x: point.eta_star, y: point.e_r, sigma: point.sigma })
+        .collect();
+    let attempt = |from: MasterCurve| least_squares(WHAT, &data, &NAMES, &from.theta(), known, e_r_theta);
+    let mut result = attempt(start.unwrap_or(MasterCurve::PAPER));
+    if start.is_none() && result.is_err() {
+        for (alpha, beta) in [(0.5, 1.5), (1.0, 3.0), (0.9, 1.8)] {
+            let other = attempt(MasterCurve { a: 0.5, alpha, b: 0.2, beta });
+            if other.is_ok() {
+                result = other;
+                break;
+            }
         }
     }
-    let (data, used) = select(points, &curve, unit);
-    let fit = least_squares(WHAT, &data, &NAMES, &curve.theta(), Sigma::Absolute, ln_s)?;
+    let mut fit = result?;
+    let curve = MasterCurve::of_theta(&fit.values());
+    if curve.alpha > curve.beta {
+        // the two terms have changed places: α is the exponent of the dense regime, hence the smaller one
+        fit = attempt(MasterCurve { a: curve.b, alpha: curve.beta, b: curve.a, beta: curve.alpha })?;
+    }
     for (name, other) in [("alpha", 1), ("beta", 3)] {
         let estimate = fit.parameters[other].estimate;
         if !estimate.se.is_finite() || estimate.ci95[0] <= 0.0 {
@@ -175,7 +171,11 @@ pub(crate) fn fit_points(
         }
     }
     let curve = MasterCurve::of_theta(&fit.values());
-    Ok(Core { fit, curve, used, sigma: unit })
+    let sigma = match known {
+        Sigma::Absolute => 1.0,
+        Sigma::Relative => fit.reduced_chi2.sqrt(),
+    };
+    Ok(Core { fit, curve, sigma })
 }
 
 fn ln_s(eta_star: f64, theta: &[f64]) -> f64 {
@@ -189,55 +189,6 @@ fn ln_s(eta_star: f64, theta: &[f64]) -> f64 {
 /// e_r (31) at θ = (ln a, α, ln b, β).
 pub(crate) fn e_r_theta(eta_star: f64, theta: &[f64]) -> f64 {
     MasterCurve::of_theta(theta).e_r(eta_star)
-}
-
-/// α is the exponent of the dense regime, hence the smaller one.
-fn ordered(curve: MasterCurve) -> MasterCurve {
-    if curve.alpha <= curve.beta {
-        curve
-    } else {
-        MasterCurve { a: curve.b, alpha: curve.beta, b: curve.a, beta: curve.alpha }
-    }
-}
-
-/// The first fit starts from the paper's numbers and, if that fails, from others nearby.
-fn robust_start(data: &[Datum], from: MasterCurve, first: bool) -> Result<Fit, FitError> {
-    let attempt =
-        |curve: MasterCurve| least_squares(WHAT, data, &NAMES, &curve.theta(), Sigma::Relative, ln_s);
-    let mut result = attempt(from);
-    if first && result.is_err() {
-        for (alpha, beta) in [(0.5, 1.5), (1.0, 3.0), (0.9, 1.8)] {
-            result = attempt(MasterCurve { a: 0.5, alpha, b: 0.2, beta });
-            if result.is_ok() {
-                break;
-            }
-        }
-    }
-    result
-}
-
-/// ln s of the points that are clear of both ends, with the second-order bias of the logarithm removed:
-/// ⟨ln((1−y)/y)⟩ − ln s = σ²/2 (1/e_r² − 1/(1−e_r)²).
-fn select(points: &[MasterPoint], curve: &MasterCurve, unit: f64) -> (Vec<Datum>, Vec<bool>) {
-    let mut data = Vec::with_capacity(points.len());
-    let mut used = Vec::with_capacity(points.len());
-    for point in points {
-        let model = curve.e_r(point.eta_star);
-        let sigma = point.sigma * unit;
-        let margin = CLEAR_OF_ENDS * sigma;
-        let usable = model > margin && model < 1.0 - margin && point.e_r > 0.0 && point.e_r < 1.0;
-        used.push(usable && point.eta_star > 0.0);
-        if used.last() == Some(&false) {
-            continue;
-        }
-        let bias = 0.5 * sigma * sigma * (model.powi(-2) - (1.0 - model).powi(-2));
-        data.push(Datum {
-            x: point.eta_star,
-            y: ((1.0 - point.e_r) / point.e_r).ln() - bias,
-            sigma: sigma / (model * (1.0 - model)),
-        });
-    }
-    (data, used)
 }
 
 /// Fits (30) to a collapse.
@@ -273,9 +224,11 @@ pub fn fit(collapse: &Collapse) -> Result<MasterFit, FitError> {
         beta: estimate("beta"),
         at_paper,
         at_crossover,
-        too_close_to_an_end: core.used.iter().filter(|used| !**used).count(),
         e_r_sigma: match known {
-            Sigma::Relative => core.sigma,
+            // weights are 1/(e_max − e_min): back to a point of a typical span
+            Sigma::Relative => {
+                core.sigma * crate::estimate::median(&points.iter().map(|p| p.sigma).collect::<Vec<_>>())
+            }
             Sigma::Absolute => crate::estimate::median(&points.iter().map(|p| p.sigma).collect::<Vec<_>>()),
         },
         samples: samples(&points, curve),

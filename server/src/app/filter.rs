@@ -87,7 +87,7 @@ impl Filters {
             .filter(|filter| !known.contains(&filter.column))
             .map(|filter| FieldProblem {
                 field: filter.column.clone(),
-                value: format!("{:?}", filter.condition),
+                value: filter.condition.to_string(),
                 problem: "is no column of these results".to_owned(),
                 remedy:
                     "filter by a scene key, a derived quantity or a column of the record; a bound is written \
@@ -95,6 +95,16 @@ impl Filters {
                         .to_owned(),
             })
             .collect()
+    }
+}
+
+/// As it stood in the query.
+impl std::fmt::Display for Condition {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Is(word) => f.write_str(word),
+            Self::Equals(number) | Self::AtLeast(number) | Self::AtMost(number) => write!(f, "{number}"),
+        }
     }
 }
 

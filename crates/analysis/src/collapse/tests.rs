@@ -30,6 +30,24 @@ fn recovers_the_papers_numbers_from_noisy_studies() {
     assert!(hits.iter().all(|hit| *hit >= 180), "{hits:?}");
 }
 
+/// Scatter as of single small runs (0.04 in e): many points then lie beyond e_r = 0 and 1, which bring knowledge too.
+#[test]
+fn much_noise_widens_the_intervals_and_refuses_nothing() {
+    let mut hits = [0_u32; 2];
+    let mut fits = 0;
+    for seed in 0..100 {
+        let found = default(&Study { noise: 0.04, ..Study::paper(seed) }.runs());
+        let beyond = found.points.iter().filter(|point| !(0.0..=1.0).contains(&point.e_r)).count();
+        assert!(beyond > 20, "{beyond}");
+        let Ok(fitted) = master::fit(&found) else { continue };
+        fits += 1;
+        hits[0] += u32::from(fitted.alpha.covers(0.74));
+        hits[1] += u32::from(fitted.beta.covers(2.3));
+    }
+    assert!(fits >= 95, "{fits} of 100 fits determined");
+    assert!(hits.iter().all(|hit| *hit * 10 >= fits * 9), "{hits:?} of {fits}");
+}
+
 fn default(runs: &[Run]) -> Collapse {
     collapse(runs, &CollapseOptions::default()).unwrap()
 }
