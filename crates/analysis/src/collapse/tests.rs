@@ -1,5 +1,6 @@
 use super::*;
 use crate::master::MasterCurve;
+use crate::plateau::P0;
 use crate::synthetic::{E_MIN, Study};
 
 /// The whole chain on the paper's 220 points: e_min, plateau, collapse and master curve within their intervals in at
