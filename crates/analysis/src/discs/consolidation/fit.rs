@@ -32,8 +32,9 @@ pub enum ErrorSource {
 pub enum Method {
     /// The straight part is freed from the bend that α and P*1 imply, and all four agree.
     SelfConsistent,
-    /// λ and Φ0 are those of the straight part as it is, Φmax and α those of the tail, P*1 follows: where the stages
-    /// cannot be made to agree (jumpy curves of few samples). λ is then low by the bend of the straight part.
+    /// λ and Φ0 are those of the straight part as it is, α and P*1 those of (9) on everything above regime I, Φmax
+    /// follows: where the stages cannot be made to agree (jumpy curves of few samples). λ is then low by the bend of the
+    /// straight part. The tail alone would fix α an order of magnitude worse and miss the points between.
     Staged,
 }
 
@@ -224,11 +225,7 @@ fn stages(data: &[Datum], windows: &Windows, earlier: Option<(Theta, Method)>) -
     }
     let (lambda, inverse_phi_0) = (plain.values()[1], plain.values()[0]);
     let join = parts.join(lambda, inverse_phi_0)?;
-    let guess: Theta = [lambda, inverse_phi_0, join.values()[0], join.values()[1]];
-    let tail = tail_fit(&parts.tail, &guess)?;
-    let (inverse_phi_max, alpha) = (tail.values()[0], tail.values()[2]);
-    let theta =
-        [lambda, inverse_phi_0, alpha, (inverse_phi_0 - inverse_phi_max) / lambda + parts.p_star_0.ln()];
+    let theta: Theta = [lambda, inverse_phi_0, join.values()[0], join.values()[1]];
     Ok(Stages { theta, line: plain, join, method: Method::Staged })
 }
 
