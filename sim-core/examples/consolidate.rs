@@ -1,5 +1,7 @@
-//! Runs a scene of cohesive discs from standard input; states as JSON lines on standard output. An argument limits the
-//! number of steps.
+//! Runs a scene of cohesive discs from standard input; states as JSON lines on standard output.
+//!
+//! `consolidate [STEPS [CHECKPOINT]]`: at most so many steps; from the checkpoint where there is one, else from the
+//! start and then written there. For timings of one state: write it once, then go on from it as often as needed.
 
 use std::io::{Read, Write};
 use std::time::Instant;
@@ -16,10 +18,18 @@ fn main() {
     };
     let limit: u64 =
         std::env::args().nth(1).map_or(u64::MAX, |word| word.parse().expect("a number of steps"));
+    let kept = std::env::args().nth(2);
+    let known_state = kept.as_ref().and_then(|path| std::fs::read(path).ok());
+    let options = Options::default();
+    let mut run = match &known_state {
+        Some(bytes) => Consolidation::from_checkpoint(&reduced, String::new(), &options, bytes),
+        None => Consolidation::new(&reduced, String::new(), &options),
+    }
+    .expect("a run");
+    let before = run.progress().steps;
     let started = Instant::now();
-    let mut run = Consolidation::new(&reduced, String::new(), &Options::default()).expect("a run");
     let mut out = std::io::stdout();
-    let mut known = 0;
+    let mut known = run.state_rows().len();
     loop {
         let progress = run.advance(2500).expect("a stable run");
         let outcome = run.state_rows();
@@ -35,17 +45,27 @@ fn main() {
             .expect("standard output");
             known += 1;
         }
-        if progress.finished || progress.steps >= limit {
+        let steps = progress.steps - before;
+        if progress.finished || steps >= limit {
             let wall = started.elapsed().as_secs_f64();
-            let per = wall * 1e9 / (progress.steps as f64 * progress.particles as f64);
+            let per = wall * 1e9 / (steps as f64 * progress.particles as f64);
+            let counters = run.counters();
             writeln!(
                 out,
-                "{{\"done\":{},\"steps\":{},\"wall_s\":{wall:.2},\"ns\":{per:.2},\"kernel\":\"{}\"}}",
+                "{{\"done\":{},\"steps\":{steps},\"wall_s\":{wall:.2},\"ns\":{per:.2},\"contacts\":{},\"listed\":{},\
+                 \"near\":{},\"refreshes\":{},\"rebuilds\":{},\"kernel\":\"{}\"}}",
                 progress.finished,
-                progress.steps,
+                counters.contacts,
+                counters.listed_pairs,
+                counters.near_pairs,
+                counters.refreshes,
+                counters.rebuilds,
                 run.kernel()
             )
             .expect("standard output");
+            if let (Some(path), None) = (&kept, &known_state) {
+                std::fs::write(path, run.save()).expect("a writable checkpoint");
+            }
             break;
         }
     }

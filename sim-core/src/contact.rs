@@ -13,6 +13,8 @@ pub mod tangential;
 
 pub use law::{ContactLaw, Law, Stiffness};
 
+use std::mem::MaybeUninit;
+
 use crate::lane::Lane;
 use crate::space::Space;
 
@@ -53,8 +55,8 @@ pub struct Encounter<S: Space, L: Lane> {
     pub approach: L,
     /// Part of the step in which the contact is closed [1].
     pub share: L,
-    /// How the contact points slide past each other; zero for a law without spins.
-    pub tangent: tangential::Tangent<S, L>,
+    /// How the contact points slide past each other; not written by a law without spins.
+    pub slide: MaybeUninit<S::Slide<L>>,
 }
 
 /// Forces of one contact.
@@ -69,7 +71,7 @@ pub struct Response<S: Space, L: Lane> {
     /// Viscous part [k_n d].
     pub viscous: L,
     /// Tangential force on a [k_n d].
-    pub tangential: S::Vector<L>,
+    pub tangential: S::Shear<L>,
     /// Rolling moment on a [k_n d²].
     pub rolling: S::Spin<L>,
 }

@@ -97,7 +97,7 @@ pub trait Lane: Copy {
     /// `at` points to `WIDTH` indices of writable forces.
     unsafe fn scatter<const FIELD: usize>(forces: *mut Force, at: *const u32, value: [Self; 3]);
     /// Adds `value` to the force (`FIELD` 0) or torque (1) of `a` and, lane after lane, subtracts it from that of `b`
-    /// (`MODE` [`OPPOSITE`]), adds it ([`SAME`]) or adds `other` ([`OTHER`]).
+    /// (`MODE` [`OPPOSITE`]), adds it ([`SAME`]), adds `other` ([`OTHER`]) or subtracts `other` ([`MINUS`]).
     ///
     /// # Safety
     /// `a` and `b` point to `WIDTH` indices of writable forces in `of_a` and `of_b`.
@@ -117,3 +117,5 @@ pub const OPPOSITE: u8 = 0;
 pub const SAME: u8 = 1;
 /// See [`Lane::scatter_pair`].
 pub const OTHER: u8 = 2;
+/// See [`Lane::scatter_pair`].
+pub const MINUS: u8 = 3;

@@ -5,10 +5,30 @@ mod spatial;
 mod vector;
 
 pub use planar::Planar;
-pub use spatial::Spatial;
+pub use spatial::{Spatial, SpatialSlide, twist};
 pub use vector::{V1, V2, V3, Vector};
 
 use crate::lane::Lane;
+use crate::state::Body;
+
+/// What two bodies do past each other: what [`Space::slide`] needs.
+#[derive(Clone, Copy)]
+pub struct Passing<S: Space, L: Lane> {
+    /// Unit vector from a to b at t_n.
+    pub normal: S::Vector<L>,
+    /// Velocity of b minus that of a at t_n − dt/2 [d/τ].
+    pub velocity: S::Vector<L>,
+    /// Their approach [d/τ].
+    pub approach: L,
+    /// Their motion across the normal.
+    pub across: S::Across<L>,
+    /// ω_a + ω_b [1/τ].
+    pub spin_sum: S::Spin<L>,
+    /// dt/2 [τ].
+    pub half_dt: L,
+    /// dt [τ].
+    pub dt: L,
+}
 
 /// Dimension, vectors and rotations. Records in memory always have three components; a planar system leaves the
 /// third one of positions and the first two of spins at zero and never computes with them.
@@ -19,6 +39,12 @@ pub trait Space: Copy + Send + Sync + 'static {
     type Vector<L: Lane>: Vector<L>;
     /// An angular velocity or torque: one number in the plane.
     type Spin<L: Lane>: Vector<L>;
+    /// Motion across the normal.
+    type Across<L: Lane>: Copy;
+    /// How the points of a contact slide past each other, at t_n − dt/2.
+    type Slide<L: Lane>: Copy;
+    /// A tangential force: a vector in space, in the plane the number along t = (−n_y, n_x).
+    type Shear<L: Lane>: Vector<L>;
 
     /// The vector of a record.
     fn vector<L: Lane>(record: [L; 3]) -> Self::Vector<L>;
@@ -28,13 +54,30 @@ pub trait Space: Copy + Send + Sync + 'static {
     fn spin<L: Lane>(record: [L; 3]) -> Self::Spin<L>;
     /// The record of a spin.
     fn spin_record<L: Lane>(spin: Self::Spin<L>) -> [L; 3];
-    /// ω × r: velocity of a point of a rotating body.
-    fn spin_cross<L: Lane>(spin: Self::Spin<L>, arm: Self::Vector<L>) -> Self::Vector<L>;
-    /// r × F.
-    fn moment<L: Lane>(arm: Self::Vector<L>, force: Self::Vector<L>) -> Self::Spin<L>;
-    /// Angle by which a contact turns about its normal in a step, (ω·n) dt; zero in the plane, where no spin does that.
-    fn turn<L: Lane>(normal: Self::Vector<L>, spin: Self::Spin<L>, dt: L) -> L;
-    /// Turns a tangential vector about the contact normal by an angle, exact to second order; in the plane there is
-    /// no such turn.
-    fn twist<L: Lane>(tangent: Self::Vector<L>, normal: Self::Vector<L>, angle: L) -> Self::Vector<L>;
+    /// Approach u = −v·(n − (dt/2) dn/dt) of two bodies, and how they move across their normal. Velocities are those of
+    /// t_n − dt/2, so the normal is taken there too.
+    fn approach<L: Lane>(
+        normal: Self::Vector<L>,
+        velocity: Self::Vector<L>,
+        inverse_distance: L,
+        half_dt: L,
+    ) -> (L, Self::Across<L>);
+    /// How the contact points slide past each other, with `rim` the sum of lever arm times spin.
+    fn slide<L: Lane>(passing: &Passing<Self, L>, rim: Self::Spin<L>) -> Self::Slide<L>;
+    /// Force on a: tangential force less the normal force along the normal.
+    fn contact_force<L: Lane>(normal: Self::Vector<L>, push: L, shear: Self::Shear<L>) -> Self::Vector<L>;
+    /// Moment of a tangential force at unit distance along the normal.
+    fn couple<L: Lane>(normal: Self::Vector<L>, shear: Self::Shear<L>) -> Self::Spin<L>;
+    /// A moment cut to a bound ≥ 0.
+    fn limit_moment<L: Lane>(moment: Self::Spin<L>, bound: L) -> Self::Spin<L>;
+    /// A tangential force as a vector.
+    fn shear_vector<L: Lane>(normal: Self::Vector<L>, shear: Self::Shear<L>) -> Self::Vector<L>;
+
+    /// Rows of a body. In the plane the spin is the third number of the row of the velocity: one row to move, one to
+    /// read.
+    fn body(position: [f64; 3], velocity: [f64; 3], spin: [f64; 3]) -> Body;
+    /// Velocity and spin of a body [d/τ, 1/τ].
+    fn motion(body: &Body) -> ([f64; 3], [f64; 3]);
+    /// Row of a body that holds the spin.
+    const SPIN_ROW: usize;
 }

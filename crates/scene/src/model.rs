@@ -63,7 +63,9 @@ impl Model {
     #[must_use]
     pub fn physics_version(self) -> u32 {
         match self {
-            Self::CohesiveSpheres | Self::CohesiveDiscs | Self::PlasticDiscs => 1,
+            // 2: tangential force in the plane as one number; exact sum of the stress.
+            Self::CohesiveDiscs => 2,
+            Self::CohesiveSpheres | Self::PlasticDiscs => 1,
         }
     }
 

@@ -8,7 +8,7 @@ use super::assemble::{assembly_mass, initial_state, parameters, pressure_control
 use super::measure::{Measured, ZERO_FORCE, load_rules, measure};
 use super::scales::Scales;
 use crate::boundary::CellControl;
-use crate::dem::{CellDynamics, CellResiduals, Fault, discs, restore_discs};
+use crate::dem::{CellDynamics, CellResiduals, Counters, Fault, discs, restore_discs};
 use crate::loading::{Equilibrium, Leg, LoadingPath, PathState, Residuals, Stage, Tolerances, Verdict};
 use crate::observables::disc_contacts::{DiscContact, clusters, load_carrying};
 use crate::{Options, Progress, SimError, Simulation};
@@ -370,6 +370,12 @@ impl Consolidation {
     #[must_use]
     pub fn state_rows(&self) -> Vec<Row> {
         self.states.iter().map(|state| state.row.clone()).collect()
+    }
+
+    /// Sizes of the present state: contacts, listed and near pairs.
+    #[must_use]
+    pub fn counters(&self) -> Counters {
+        self.dem.counters()
     }
 
     fn expected_states(&self) -> usize {

@@ -1,13 +1,15 @@
 //! A complete law, put together from its slots.
 
+use std::mem::MaybeUninit;
+
 use super::attraction::Attraction;
 use super::damping::Damping;
 use super::normal::Normal;
 use super::rolling::Rolling;
-use super::tangential::{Tangent, Tangential};
+use super::tangential::Tangential;
 use super::{Encounter, PairGeometry, PairMotion, Response};
 use crate::lane::{GROUP, Lane};
-use crate::space::{Space, Vector};
+use crate::space::{Passing, Space, Vector};
 
 /// Normal, damping, attraction, tangential and rolling law of one kind of contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -87,6 +89,8 @@ pub trait ContactLaw<S: Space>: Copy + Send + Sync + 'static {
     }
     /// Memory of an open contact, slot by slot.
     fn vacant(slot: usize) -> f64;
+    /// Whether a slot changes sign when the two bodies swap roles.
+    fn reverses(slot: usize) -> bool;
     /// For the time step.
     fn stiffness(&self) -> Stiffness;
     /// Elastic normal energy and potential of the attraction [k_n d²].
@@ -123,32 +127,25 @@ where
         dt: L,
     ) -> Encounter<S, L> {
         let half = L::splat(0.5);
-        let zero = L::splat(0.0);
-        let normal = geometry.normal;
-        // Velocities are those of t_n − dt/2, so the normal is taken there too: n − (dt/2) dn/dt.
-        let opening = motion.velocity.dot(normal);
-        let across = motion.velocity.sub_scaled(opening, normal);
-        let normal_rate = across.scale(geometry.inverse_distance);
         let half_dt = half.mul(dt);
-        // u = −v·(n − (dt/2) dn/dt)
-        let approach = half_dt.mul(across.dot(normal_rate)).sub(opening);
+        let (normal, velocity) = (geometry.normal, motion.velocity);
+        let (approach, across) = S::approach(normal, velocity, geometry.inverse_distance, half_dt);
 
         let overlap = geometry.overlap;
-        let share = L::splat(1.0).keep(zero.less(overlap));
+        let share = L::splat(1.0).keep(L::splat(0.0).less(overlap));
         let share = if D::JUMPS || A::JUMPS { share_of_step(overlap, approach, dt, share) } else { share };
 
-        let tangent = if T::NEEDS_SPIN {
-            let normal_between = normal.sub_scaled(half_dt, normal_rate);
+        let slide = if T::NEEDS_SPIN {
             // Lever arms reach the middle of the overlap: R − ov/2, with the overlap of t_n − dt/2.
             let quarter = half.mul(half_dt.neg_mul_add(approach, overlap));
             let rim = motion.rim.sub_scaled(quarter, motion.spin_sum);
-            let slip = motion.velocity.add_scaled(approach, normal_between);
-            let slip = slip.add_scaled(L::splat(-1.0), S::spin_cross(rim, normal_between));
-            Tangent { slip, normal_rate, turn: S::turn(normal, motion.spin_sum.scale(half), dt) }
+            let spin_sum = motion.spin_sum;
+            let passing = Passing { normal, velocity, approach, across, spin_sum, half_dt, dt };
+            MaybeUninit::new(S::slide(&passing, rim))
         } else {
-            Tangent { slip: S::Vector::zero(), normal_rate: S::Vector::zero(), turn: zero }
+            MaybeUninit::uninit()
         };
-        Encounter { approach, share, tangent }
+        Encounter { approach, share, slide }
     }
 
     #[inline(always)]
@@ -161,8 +158,7 @@ where
         memory: *mut f64,
     ) -> Response<S, L> {
         let PairGeometry { normal, overlap, root_mass, .. } = *geometry;
-        let Encounter { approach, share, tangent } = encounter;
-        let (approach, share) = (*approach, *share);
+        let Encounter { approach, share, ref slide } = *encounter;
         let active = L::splat(0.0).less(share);
 
         let elastic = self.normal.elastic(overlap);
@@ -174,10 +170,11 @@ where
         let tangential = if T::NEEDS_SPIN {
             // SAFETY: see above.
             unsafe {
-                self.tangential.force(normal, tangent, elastic, active, dt, memory.add(D::SLOTS * GROUP))
+                let slide = slide.assume_init_ref();
+                self.tangential.force(normal, slide, elastic, active, dt, memory.add(D::SLOTS * GROUP))
             }
         } else {
-            S::Vector::zero()
+            S::Shear::zero()
         };
         let rolling = if R::ROLLS {
             // SAFETY: see above.
@@ -194,6 +191,11 @@ where
             S::Spin::zero()
         };
         Response { normal: normal_force, elastic, attraction, viscous, tangential, rolling }
+    }
+
+    fn reverses(slot: usize) -> bool {
+        let rolling = slot >= D::SLOTS + T::SLOTS;
+        rolling || (T::REVERSES && slot >= D::SLOTS)
     }
 
     fn vacant(slot: usize) -> f64 {

@@ -2,23 +2,14 @@
 
 mod coulomb_spring;
 mod frictionless;
+mod planar_spring;
 
 pub use coulomb_spring::CoulombSpring;
 pub use frictionless::Frictionless;
+pub use planar_spring::PlanarSpring;
 
 use crate::lane::Lane;
 use crate::space::Space;
-
-/// Kinematics a tangential law may use, at t_n − dt/2.
-#[derive(Clone, Copy)]
-pub struct Tangent<S: Space, L: Lane> {
-    /// Velocity of the contact point of b minus that of a, without its normal part [d/τ].
-    pub slip: S::Vector<L>,
-    /// dn/dt: rate at which the normal turns [1/τ].
-    pub normal_rate: S::Vector<L>,
-    /// (ω·n) dt with the mean spin of the two bodies: angle by which the contact turns about its normal [1].
-    pub turn: L,
-}
 
 /// A tangential law.
 pub trait Tangential<S: Space>: Copy + Send + Sync + 'static {
@@ -26,6 +17,8 @@ pub trait Tangential<S: Space>: Copy + Send + Sync + 'static {
     const SLOTS: usize;
     /// Whether spins and torques exist.
     const NEEDS_SPIN: bool;
+    /// Whether the memory changes sign when the two bodies swap roles.
+    const REVERSES: bool;
     /// Part of the kernel name.
     const NAME: &'static str;
 
@@ -37,12 +30,12 @@ pub trait Tangential<S: Space>: Copy + Send + Sync + 'static {
     unsafe fn force<L: Lane>(
         &self,
         normal: S::Vector<L>,
-        tangent: &Tangent<S, L>,
+        slide: &S::Slide<L>,
         elastic: L,
         active: L::Mask,
         dt: L,
         memory: *mut f64,
-    ) -> S::Vector<L>;
+    ) -> S::Shear<L>;
     /// k_t, for the time step [k_n].
     fn stiffness(&self) -> f64;
     /// Coulomb bound for an elastic normal force [k_n d]; infinite without a bound, zero without friction.

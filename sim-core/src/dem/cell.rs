@@ -104,8 +104,7 @@ impl<G: Grains, C: ContactLaw<Planar>> CellDynamics for Dem<Planar, G, PeriodicC
                 let (i, j) = (self.original[a as usize], self.original[b as usize]);
                 pairs.push((i.min(j), i.max(j), response.elastic - response.attraction));
                 let bound = self.law.bound(response.elastic);
-                let tangential = Planar::vector_record(response.tangential);
-                let shear = libm::hypot(tangential[0], tangential[1]);
+                let shear = response.tangential.0[0].abs();
                 sliding += usize::from(shear > 0.0 && shear >= bound * (1.0 - 1e-9));
             }
         });
@@ -120,11 +119,11 @@ impl<G: Grains, C: ContactLaw<Planar>> CellDynamics for Dem<Planar, G, PeriodicC
         };
         for (slot, (body, force)) in self.bodies.iter().zip(&forces).enumerate() {
             let disc = self.original[slot] as usize;
-            let (v, w) = (&body.velocity, body.spin[2]);
+            let [u, v, w, _] = body.velocity;
             residuals.forces[disc] = libm::hypot(force.force[0], force.force[1]);
             residuals.moments[disc] = force.torque[2].abs();
-            residuals.kinetic[disc] = 0.5
-                * (self.grains.mass(slot) * (v[0] * v[0] + v[1] * v[1]) + self.grains.inertia(slot) * w * w);
+            residuals.kinetic[disc] =
+                0.5 * (self.grains.mass(slot) * (u * u + v * v) + self.grains.inertia(slot) * w * w);
         }
         residuals
     }
@@ -147,7 +146,7 @@ impl<G: Grains, C: ContactLaw<Planar>> CellDynamics for Dem<Planar, G, PeriodicC
             picture.positions[disc] = [inside[0], inside[1]];
             picture.radii[disc] = self.grains.radius(slot);
             picture.velocities[disc] = [body.velocity[0], body.velocity[1]];
-            picture.spins[disc] = body.spin[2];
+            picture.spins[disc] = body.velocity[2];
         }
         self.each_contact(|a, b, contact| {
             let response = &contact.response;
@@ -156,8 +155,6 @@ impl<G: Grains, C: ContactLaw<Planar>> CellDynamics for Dem<Planar, G, PeriodicC
             }
             let (i, j) = (self.original[a as usize], self.original[b as usize]);
             let separation = Planar::vector_record(contact.separation);
-            let normal = Planar::vector_record(contact.normal);
-            let tangential = Planar::vector_record(response.tangential);
             let sign = if i < j { 1.0 } else { -1.0 };
             picture.contacts.push(DiscContact {
                 i: i.min(j),
@@ -166,7 +163,7 @@ impl<G: Grains, C: ContactLaw<Planar>> CellDynamics for Dem<Planar, G, PeriodicC
                 branch: [sign * separation[0], sign * separation[1]],
                 normal: response.elastic - response.attraction,
                 // Along t = (−n_y, n_x): reversing n and the force leaves it as it is.
-                tangential: tangential[1] * normal[0] - tangential[0] * normal[1],
+                tangential: response.tangential.0[0],
                 rolling: sign * Planar::spin_record(response.rolling)[2],
             });
         });

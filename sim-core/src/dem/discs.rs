@@ -10,7 +10,7 @@ use crate::contact::attraction::{Attraction, FiniteRange, NoAttraction};
 use crate::contact::damping::{Damping, Lagged, NoDamping, damping_ratio};
 use crate::contact::normal::Hooke;
 use crate::contact::rolling::{NoRolling, Rolling, SpringSlider};
-use crate::contact::tangential::{CoulombSpring, Frictionless, Tangential};
+use crate::contact::tangential::{Frictionless, PlanarSpring, Tangential};
 use crate::contact::{ContactLaw, Law};
 use crate::space::Planar;
 use crate::state::Discs;
@@ -130,7 +130,7 @@ fn choose_friction<D: Damping, A: Attraction>(
     damping: D,
     attraction: A,
 ) -> Compiled {
-    let friction = CoulombSpring { kt: parameters.kt, mu: parameters.mu };
+    let friction = PlanarSpring { kt: parameters.kt, mu: parameters.mu };
     if parameters.kt == 0.0 || parameters.mu == 0.0 {
         build(source, options, damping, attraction, Frictionless, NoRolling)
     } else if parameters.kr == 0.0 || parameters.mu_r == 0.0 {

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::View;
-use super::engine::Dem;
+use super::engine::{Dem, set_motion};
 use super::lists::speed;
 use crate::boundary::Boundary;
 use crate::contact::ContactLaw;
@@ -193,7 +193,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dynamics for Dem<S, 
     }
 
     fn max_speed(&self) -> f64 {
-        self.bodies.iter().map(speed).fold(0.0, f64::max)
+        self.bodies.iter().map(speed::<S>).fold(0.0, f64::max)
     }
 
     fn set_motion(&mut self, changes: &[Motion]) {
@@ -201,13 +201,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dynamics for Dem<S, 
         for (slot, &particle) in self.original.iter().enumerate() {
             slot_of[particle as usize] = slot;
         }
-        let row = |v: [f64; 3]| [v[0], v[1], v[2], 0.0];
         for change in changes {
             let body = &mut self.bodies[slot_of[change.particle]];
-            body.velocity = row(change.velocity);
-            if C::NEEDS_SPIN {
-                body.spin = row(change.spin);
-            }
+            let spin = if C::NEEDS_SPIN { change.spin } else { S::motion(body).1 };
+            set_motion::<S>(body, change.velocity, spin);
         }
         // Budgets were made for the old speeds.
         self.refresh();

@@ -79,12 +79,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         path: Path,
         threads: usize,
     ) -> Self {
-        let row = |v: &[f64; 3]| [v[0], v[1], v[2], 0.0];
         let bodies = (0..initial.positions.len())
-            .map(|i| Body {
-                position: row(&initial.positions[i]),
-                velocity: row(&initial.velocities[i]),
-                spin: if C::NEEDS_SPIN { row(&initial.spins[i]) } else { [0.0; 4] },
+            .map(|i| {
+                let spin = if C::NEEDS_SPIN { initial.spins[i] } else { [0.0; 3] };
+                S::body(initial.positions[i], initial.velocities[i], spin)
             })
             .collect::<Vec<_>>();
         let original = (0..bodies.len() as u32).collect();
@@ -184,10 +182,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         self.dt = dt;
         for (slot, body) in self.bodies.iter_mut().enumerate() {
             let force = &now.forces[slot];
+            let (mut velocity, mut spin) = S::motion(body);
             for axis in 0..3 {
-                body.velocity[axis] -= 0.5 * dt * force.force[axis] * self.grains.inverse_mass(slot);
-                body.spin[axis] -= 0.5 * dt * force.torque[axis] * self.grains.inverse_inertia(slot);
+                velocity[axis] -= 0.5 * dt * force.force[axis] * self.grains.inverse_mass(slot);
+                spin[axis] -= 0.5 * dt * force.torque[axis] * self.grains.inverse_inertia(slot);
             }
+            set_motion::<S>(body, velocity, spin);
         }
         if let Some(walls) = &mut self.walls {
             for wall in 0..6 {
@@ -206,10 +206,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         let shift = 0.5 * (self.dt - dt);
         for (slot, body) in self.bodies.iter_mut().enumerate() {
             let force = &now.forces[slot];
+            let (mut velocity, mut spin) = S::motion(body);
             for axis in 0..3 {
-                body.velocity[axis] += shift * force.force[axis] * self.grains.inverse_mass(slot);
-                body.spin[axis] += shift * force.torque[axis] * self.grains.inverse_inertia(slot);
+                velocity[axis] += shift * force.force[axis] * self.grains.inverse_mass(slot);
+                spin[axis] += shift * force.torque[axis] * self.grains.inverse_inertia(slot);
             }
+            set_motion::<S>(body, velocity, spin);
         }
         if let Some(walls) = &mut self.walls {
             for wall in 0..6 {
@@ -229,4 +231,11 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         self.dt = dt;
         self.refresh();
     }
+}
+
+/// Gives a body another velocity and spin.
+pub(super) fn set_motion<S: Space>(body: &mut Body, velocity: [f64; 3], spin: [f64; 3]) {
+    let [x, y, z, inverse_budget] = body.position;
+    *body = S::body([x, y, z], velocity, spin);
+    body.position[3] = inverse_budget;
 }

@@ -77,7 +77,9 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// The list holds valid indices and memory for its groups; the forces of its particles a and those of `targets`
     /// are writable and no other thread touches them.
     #[inline(always)]
-    unsafe fn contacts<L: Lane>(&self, list: &mut ContactList, targets: Targets) {
+    unsafe fn contacts<L: Lane>(&self, list: &mut ContactList, targets: Targets) -> [f64; 2] {
+        let mut virial = [L::splat(0.0); 2];
+        let mut rest = [0.0; 2];
         let (indices, memory) = (list.indices.as_ptr().cast::<u32>(), list.memory.as_mut_ptr());
         let rows = list.constants.as_ptr();
         let groups = if L::WIDTH == GROUP { list.count / GROUP } else { 0 };
@@ -85,7 +87,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         while first < groups {
             let count = if groups - first < BATCH { groups - first } else { BATCH };
             // SAFETY: these groups are full.
-            unsafe { self.batch::<L>(indices, memory, rows, targets, first, count) };
+            let own = unsafe { self.batch::<L>(indices, memory, rows, targets, first, count) };
+            virial = [virial[0].add(own[0]), virial[1].add(own[1])];
             first += count;
         }
         for k in groups * GROUP..list.count {
@@ -96,9 +99,21 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
                 let memory = memory.add(group * C::SLOTS * GROUP + lane);
                 let contact = self.pair::<f64>(a, a.add(GROUP), memory, constants::<G>(rows, group, lane));
                 let target = targets.at.add(group * targets.stride + lane);
-                self.apply::<f64>(a, targets.forces, target, &contact);
+                let own = self.apply::<f64>(a, targets.forces, target, &contact);
+                rest[0] += own[0];
+                rest[1] += own[1];
             }
         }
+        if !B::DEFORMS {
+            return rest;
+        }
+        // Exact sums: any order gives the same bits.
+        std::array::from_fn(|axis| {
+            let mut lanes = [0.0; GROUP];
+            // SAFETY: there is room for the widest lane.
+            unsafe { virial[axis].store(lanes.as_mut_ptr()) };
+            rest[axis] + ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3]))
+        })
     }
 
     /// Groups `first..first + count`, part by part.
@@ -114,7 +129,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         targets: Targets,
         first: usize,
         count: usize,
-    ) {
+    ) -> [L; 2] {
+        let mut virial = [L::splat(0.0); 2];
         let mut meetings = [const { MaybeUninit::<Meeting<S, L>>::uninit() }; BATCH];
         let mut moving = [const { MaybeUninit::<Moving<S, L>>::uninit() }; BATCH];
         let (meetings, moving) = (meetings.as_mut_ptr(), moving.as_mut_ptr());
@@ -143,10 +159,14 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
                 let constants = constants::<G>(rows, first + k, 0);
                 let contact = self.respond::<L>(meeting, moving, memory, constants);
                 let target = targets.at.add((first + k) * targets.stride);
-                self.apply::<L>(a, targets.forces, target, &contact);
+                let own = self.apply::<L>(a, targets.forces, target, &contact);
+                if B::DEFORMS {
+                    virial = [virial[0].add(own[0]), virial[1].add(own[1])];
+                }
                 k += 1;
             }
         }
+        virial
     }
 
     /// The force pass of one chunk.
@@ -156,13 +176,22 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// touches them; bodies are not written meanwhile.
     #[inline(always)]
     unsafe fn chunk<L: Lane>(&self, chunk: &mut Chunk) {
+        // Laws on the stack: what they derive from their parameters is worked out once, not after every store.
+        let (law, wall_law) = (*self.law, *self.wall_law);
+        // SAFETY: the caller vouches.
+        unsafe { Pass { law: &law, wall_law: &wall_law, ..*self }.chunk_with_own_laws::<L>(chunk) }
+    }
+
+    /// See `chunk`.
+    #[inline(always)]
+    unsafe fn chunk_with_own_laws<L: Lane>(&self, chunk: &mut Chunk) {
         let inner = Targets {
             forces: self.forces,
             at: chunk.inner.indices.as_ptr().cast::<u32>().wrapping_add(GROUP),
             stride: 2 * GROUP,
         };
         // SAFETY: the list holds valid indices of this chunk.
-        unsafe { self.contacts::<L>(&mut chunk.inner, inner) };
+        let of_inner = unsafe { self.contacts::<L>(&mut chunk.inner, inner) };
 
         if let Some(walls) = self.walls {
             for wall in 0..6 {
@@ -195,27 +224,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             stride: GROUP,
         };
         // SAFETY: the list holds valid indices and there is a ghost for every b.
-        unsafe { self.contacts::<L>(&mut chunk.outer, outer) };
+        let of_outer = unsafe { self.contacts::<L>(&mut chunk.outer, outer) };
         if B::DEFORMS {
-            // SAFETY: this thread owns the forces of the chunk.
-            chunk.virial = unsafe { self.virial(chunk.start, chunk.end) };
+            chunk.virial = [of_inner[0] + of_outer[0], of_inner[1] + of_outer[1], 0.0];
         }
-    }
-
-    /// Σ F_α r_α of the contacts owned by the particles of a chunk [k_n d]: four partial sums by slot, so that the
-    /// order is fixed and additions overlap.
-    #[inline(always)]
-    unsafe fn virial(&self, start: usize, end: usize) -> [f64; 3] {
-        let mut parts = [[0.0; 2]; 4];
-        for slot in start..end {
-            // SAFETY: the caller owns these forces.
-            let torque = unsafe { &(*self.forces.add(slot)).torque };
-            let part = &mut parts[slot % 4];
-            part[0] += torque[0];
-            part[1] += torque[1];
-        }
-        let sum = |axis: usize| (parts[0][axis] + parts[1][axis]) + (parts[2][axis] + parts[3][axis]);
-        [sum(0), sum(1), 0.0]
     }
 
     /// The force pass of one chunk on a path.

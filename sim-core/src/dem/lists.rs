@@ -100,8 +100,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             if contact.a > contact.b {
                 // Springs hold displacements of b against a: they change sign with the roles.
                 (contact.a, contact.b) = (contact.b, contact.a);
-                for value in &mut contact.memory[C::TANGENTIAL_SLOT..] {
-                    *value = -*value;
+                for (slot, value) in contact.memory.iter_mut().enumerate() {
+                    if C::reverses(slot) {
+                        *value = -*value;
+                    }
                 }
             }
         }
@@ -120,7 +122,7 @@ pub(super) fn point(body: &Body) -> [f64; 3] {
 }
 
 /// Speed of a body [d/τ].
-pub(super) fn speed(body: &Body) -> f64 {
-    let v = &body.velocity;
+pub(super) fn speed<S: Space>(body: &Body) -> f64 {
+    let (v, _) = S::motion(body);
     (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
 }

@@ -205,22 +205,22 @@ fn follow<G: Grains, const SPIN: bool>(
     dt: f64,
     damped: impl Fn(f64, f64) -> f64,
 ) -> f64 {
-    let mut rush = [0.0_f64; 2];
+    // Rows of the plane: (x, y, 0, inverse budget), (v_x, v_y, ω, 0), (F_x, F_y, M, 0), four numbers at a time.
+    let (mut rush, step) = ([0.0_f64; 4], [dt, dt, 0.0, 0.0]);
+    let rate = [rate[0], rate[1], 0.0, 0.0];
     for (k, (body, force)) in bodies.iter_mut().zip(forces).enumerate() {
         let per_mass = dt * grains.inverse_mass(first + k);
+        let per_inertia = if SPIN { dt * grains.inverse_inertia(first + k) } else { 0.0 };
+        let gain = [per_mass, per_mass, per_inertia, 0.0];
         let inverse_budget = body.position[3];
-        for c in 0..2 {
-            body.velocity[c] = damped(force.force[c], body.velocity[c]).mul_add(per_mass, body.velocity[c]);
+        for c in 0..4 {
+            body.velocity[c] = damped(force.force[c], body.velocity[c]).mul_add(gain[c], body.velocity[c]);
             let carried = body.position[c].mul_add(rate[c], body.velocity[c]);
-            body.position[c] = carried.mul_add(dt, body.position[c]);
+            body.position[c] = carried.mul_add(step[c], body.position[c]);
             let hurry = body.velocity[c].abs() * inverse_budget;
             rush[c] = if hurry > rush[c] { hurry } else { rush[c] };
         }
-        if SPIN {
-            let per_inertia = dt * grains.inverse_inertia(first + k);
-            body.spin[2] = damped(force.torque[2], body.spin[2]).mul_add(per_inertia, body.spin[2]);
-        }
-        *force = Force::default();
+        force.force = [0.0; 4];
     }
     rush[0].max(rush[1])
 }

@@ -5,14 +5,14 @@ use serde::{Deserialize, Serialize};
 
 use super::engine::Dem;
 use super::kernel::Path;
-use super::lists::Carried;
+use super::lists::{Carried, point};
 use super::{Drag, lists};
 use crate::SimError;
 use crate::boundary::Boundary;
 use crate::contact::ContactLaw;
 use crate::control::ServoWalls;
 use crate::space::Space;
-use crate::state::{Body, Grains};
+use crate::state::Grains;
 
 /// The stored state, particles in slot order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -70,7 +70,6 @@ impl Persisted {
 impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     /// The state as bytes.
     pub(super) fn persist(&self) -> Vec<u8> {
-        let three = |v: &[f64; 4]| [v[0], v[1], v[2]];
         let pack = |contacts: Vec<Carried>| -> Vec<(u32, u32, Vec<f64>)> {
             let mut packed: Vec<_> =
                 contacts.into_iter().map(|contact| (contact.a, contact.b, contact.memory)).collect();
@@ -89,7 +88,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             bodies: self
                 .bodies
                 .iter()
-                .map(|body| [three(&body.position), three(&body.velocity), three(&body.spin)])
+                .map(|body| {
+                    let (velocity, spin) = S::motion(body);
+                    [point(body), velocity, spin]
+                })
                 .collect(),
             original: self.original.clone(),
             drag: self.drag.clone(),
@@ -109,12 +111,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         path: Path,
         threads: usize,
     ) -> Self {
-        let row = |v: [f64; 3]| [v[0], v[1], v[2], 0.0];
-        let bodies = state
-            .bodies
-            .iter()
-            .map(|&[x, v, w]| Body { position: row(x), velocity: row(v), spin: row(w) })
-            .collect();
+        let bodies = state.bodies.iter().map(|&[x, v, w]| S::body(x, v, w)).collect();
         let mut dem = Self::assemble(
             law,
             wall_law,

@@ -84,7 +84,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                             elastic: response.elastic,
                             normal_force: response.elastic - response.attraction,
                             viscous: response.viscous,
-                            tangential: S::vector_record(response.tangential),
+                            tangential: S::vector_record(S::shear_vector(
+                                contact.normal,
+                                response.tangential,
+                            )),
                             sliding: sliding::<S>(response, self.wall_law.bound(response.elastic)),
                         });
                     }
@@ -99,7 +102,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         let (mut i, mut j) = (self.original[a as usize] as usize, self.original[b as usize] as usize);
         let mut normal = S::vector_record(contact.normal);
         let response = &contact.response;
-        let mut tangential = S::vector_record(response.tangential);
+        let mut tangential = S::vector_record(S::shear_vector(contact.normal, response.tangential));
         if i > j {
             (i, j) = (j, i);
             normal = normal.map(|x| -x);
@@ -129,9 +132,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         let keep = 1.0 / (1.0 + half * drag);
         let (per_mass, per_inertia) =
             (half * self.grains.inverse_mass(slot), half * self.grains.inverse_inertia(slot));
+        let (velocity, spin) = S::motion(body);
         (
-            std::array::from_fn(|k| keep * (body.velocity[k] + per_mass * force.force[k])),
-            std::array::from_fn(|k| keep * (body.spin[k] + per_inertia * force.torque[k])),
+            std::array::from_fn(|k| keep * (velocity[k] + per_mass * force.force[k])),
+            std::array::from_fn(|k| keep * (spin[k] + per_inertia * force.torque[k])),
         )
     }
 

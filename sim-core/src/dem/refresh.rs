@@ -66,7 +66,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             let (bodies, budget, own) = Self::parts(dem, chunk);
             let mut sum = 0.0;
             for (body, budget) in bodies.iter().zip(budget) {
-                *budget = speed(body);
+                *budget = speed::<S>(body);
                 sum += *budget;
             }
             own.rush = sum;

@@ -218,11 +218,11 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             return fault(what);
         }
         for (slot, body) in self.bodies.iter().enumerate() {
-            let (x, v, w) = (&body.position, &body.velocity, &body.spin);
+            let (x, (v, w)) = (&body.position, S::motion(body));
             if !(0..3).all(|k| x[k].is_finite() && v[k].is_finite() && w[k].is_finite()) {
                 return fault(format!("particle {} is not finite", self.original[slot]));
             }
-            let travel = speed(body) * self.dt;
+            let travel = speed::<S>(body) * self.dt;
             if travel > FASTEST {
                 return fault(format!("particle {} moves {travel:.3e} d in a step", self.original[slot]));
             }

@@ -12,7 +12,7 @@ use std::arch::x86_64::{
     _mm256_unpacklo_pd,
 };
 
-use super::{Lane, OPPOSITE, OTHER};
+use super::{Lane, MINUS, OPPOSITE, OTHER};
 use crate::state::{Body, Force};
 
 /// Four doubles in one register.
@@ -250,7 +250,7 @@ impl Lane for Avx2 {
         other: [Self; 3],
     ) {
         let rows = Self::rows(value);
-        let others = if MODE == OTHER { Self::rows(other) } else { rows };
+        let others = if MODE == OTHER || MODE == MINUS { Self::rows(other) } else { rows };
         // SAFETY: the caller vouches for the indices; a force is two aligned rows of four doubles.
         unsafe {
             for lane in 0..4 {
@@ -262,7 +262,11 @@ impl Lane for Avx2 {
                 let on_b = others[lane];
                 _mm256_store_pd(
                     to,
-                    if MODE == OPPOSITE { _mm256_sub_pd(sum, on_b) } else { _mm256_add_pd(sum, on_b) },
+                    if MODE == OPPOSITE || MODE == MINUS {
+                        _mm256_sub_pd(sum, on_b)
+                    } else {
+                        _mm256_add_pd(sum, on_b)
+                    },
                 );
             }
         }

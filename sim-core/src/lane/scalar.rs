@@ -1,6 +1,6 @@
 //! One number at a time: the plain path, lane for lane the arithmetic of the vector path.
 
-use super::{Lane, OPPOSITE, SAME};
+use super::{Lane, MINUS, OPPOSITE, SAME};
 use crate::state::{Body, Force};
 
 impl Lane for f64 {
@@ -132,6 +132,7 @@ impl Lane for f64 {
         let on_b = match MODE {
             OPPOSITE => [-value[0], -value[1], -value[2]],
             SAME => value,
+            MINUS => [-other[0], -other[1], -other[2]],
             _ => other,
         };
         // SAFETY: the caller vouches for the indices; the two references do not live at the same time.

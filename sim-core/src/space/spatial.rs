@@ -1,11 +1,31 @@
 //! Three dimensions.
 
-use super::{Space, V3, Vector};
+use super::{Passing, Space, V3, Vector};
 use crate::lane::Lane;
+use crate::state::Body;
 
 /// Spheres in space.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Spatial;
+
+/// How contact points slide past each other in space, at t_n − dt/2.
+#[derive(Clone, Copy)]
+pub struct SpatialSlide<L: Lane> {
+    /// Velocity of the contact point of b minus that of a, without its normal part [d/τ].
+    pub slip: V3<L>,
+    /// dn/dt: rate at which the normal turns [1/τ].
+    pub normal_rate: V3<L>,
+    /// (ω·n) dt with the mean spin of the two bodies: angle by which the contact turns about its normal [1].
+    pub turn: L,
+}
+
+/// Turns a tangential vector about the contact normal by an angle, exact to second order.
+#[inline(always)]
+pub fn twist<L: Lane>(tangent: V3<L>, normal: V3<L>, angle: L) -> V3<L> {
+    // t + θ n × t − θ²/2 t
+    let turned = tangent.add_scaled(angle, cross(normal, tangent));
+    turned.sub_scaled(angle.mul(angle).mul(L::splat(0.5)), tangent)
+}
 
 /// a × b.
 #[inline(always)]
@@ -18,6 +38,10 @@ impl Space for Spatial {
     const DIMENSION: usize = 3;
     type Vector<L: Lane> = V3<L>;
     type Spin<L: Lane> = V3<L>;
+    /// dn/dt [1/τ].
+    type Across<L: Lane> = V3<L>;
+    type Slide<L: Lane> = SpatialSlide<L>;
+    type Shear<L: Lane> = V3<L>;
 
     #[inline(always)]
     fn vector<L: Lane>(record: [L; 3]) -> V3<L> {
@@ -35,22 +59,52 @@ impl Space for Spatial {
     fn spin_record<L: Lane>(spin: V3<L>) -> [L; 3] {
         spin.0
     }
+
     #[inline(always)]
-    fn spin_cross<L: Lane>(spin: V3<L>, arm: V3<L>) -> V3<L> {
-        cross(spin, arm)
+    fn approach<L: Lane>(normal: V3<L>, velocity: V3<L>, inverse_distance: L, half_dt: L) -> (L, V3<L>) {
+        let opening = velocity.dot(normal);
+        let across = velocity.sub_scaled(opening, normal);
+        let normal_rate = across.scale(inverse_distance);
+        (half_dt.mul(across.dot(normal_rate)).sub(opening), normal_rate)
     }
     #[inline(always)]
-    fn moment<L: Lane>(arm: V3<L>, force: V3<L>) -> V3<L> {
-        cross(arm, force)
+    fn slide<L: Lane>(passing: &Passing<Self, L>, rim: V3<L>) -> SpatialSlide<L> {
+        let Passing { normal, velocity, approach, across: normal_rate, spin_sum, half_dt, dt } = *passing;
+        let normal_between = normal.sub_scaled(half_dt, normal_rate);
+        let slip = velocity.add_scaled(approach, normal_between);
+        let slip = slip.add_scaled(L::splat(-1.0), cross(rim, normal_between));
+        SpatialSlide { slip, normal_rate, turn: spin_sum.scale(L::splat(0.5)).dot(normal).mul(dt) }
     }
     #[inline(always)]
-    fn turn<L: Lane>(normal: V3<L>, spin: V3<L>, dt: L) -> L {
-        spin.dot(normal).mul(dt)
+    fn contact_force<L: Lane>(normal: V3<L>, push: L, shear: V3<L>) -> V3<L> {
+        shear.sub_scaled(push, normal)
     }
     #[inline(always)]
-    fn twist<L: Lane>(tangent: V3<L>, normal: V3<L>, angle: L) -> V3<L> {
-        // t + θ n × t − θ²/2 t
-        let turned = tangent.add_scaled(angle, cross(normal, tangent));
-        turned.sub_scaled(angle.mul(angle).mul(L::splat(0.5)), tangent)
+    fn couple<L: Lane>(normal: V3<L>, shear: V3<L>) -> V3<L> {
+        cross(normal, shear)
     }
+    #[inline(always)]
+    fn limit_moment<L: Lane>(moment: V3<L>, bound: L) -> V3<L> {
+        let square = moment.dot(moment);
+        let slipping = bound.mul(bound).less(square);
+        if L::any(slipping) {
+            moment.scale(L::select(slipping, bound.div(square.sqrt()), L::splat(1.0)))
+        } else {
+            moment
+        }
+    }
+    #[inline(always)]
+    fn shear_vector<L: Lane>(_: V3<L>, shear: V3<L>) -> V3<L> {
+        shear
+    }
+
+    fn body(position: [f64; 3], velocity: [f64; 3], spin: [f64; 3]) -> Body {
+        let row = |v: [f64; 3]| [v[0], v[1], v[2], 0.0];
+        Body { position: row(position), velocity: row(velocity), spin: row(spin) }
+    }
+    fn motion(body: &Body) -> ([f64; 3], [f64; 3]) {
+        let three = |v: &[f64; 4]| [v[0], v[1], v[2]];
+        (three(&body.velocity), three(&body.spin))
+    }
+    const SPIN_ROW: usize = 2;
 }

@@ -18,7 +18,7 @@ pub struct Body {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(32))]
 pub struct Force {
-    /// Force [k_n d].
+    /// Force [k_n d]; where space deforms (the plane) the third number is the torque [k_n d²].
     pub force: [f64; 4],
     /// Torque [k_n d²].
     pub torque: [f64; 4],

@@ -32,14 +32,7 @@ impl<S: Space> Rolling<S> for SpringSlider {
         let old: S::Spin<L> = unsafe { S::Spin::load(memory) };
         let moment = old.add_scaled(L::splat(self.kr).mul(dt), spin_difference);
         let bound = L::splat(self.mu_r).mul(elastic);
-        let square = moment.dot(moment);
-        let slipping = bound.mul(bound).less(square);
-        let moment = if L::any(slipping) {
-            moment.scale(L::select(slipping, bound.div(square.sqrt()), L::splat(1.0)))
-        } else {
-            moment
-        };
-        let moment = moment.keep(active);
+        let moment = S::limit_moment(moment, bound).keep(active);
         // SAFETY: as above.
         unsafe { moment.store(memory) };
         moment

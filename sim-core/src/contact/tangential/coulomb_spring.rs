@@ -5,9 +5,9 @@
 //! normal with the mean spin of the bodies: a rigidly rotating pair keeps its spring exactly, to second order), is
 //! projected on the tangent plane, and is cut back to |k_t ξ| = μ f_e, the elastic part of the normal force alone.
 
-use super::{Tangent, Tangential};
+use super::Tangential;
 use crate::lane::Lane;
-use crate::space::{Space, Vector};
+use crate::space::{Spatial, SpatialSlide, V3, Vector, twist};
 
 /// Spring k_t, limit μ f_e.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,29 +18,30 @@ pub struct CoulombSpring {
     pub mu: f64,
 }
 
-impl<S: Space> Tangential<S> for CoulombSpring {
-    const SLOTS: usize = S::DIMENSION;
+impl Tangential<Spatial> for CoulombSpring {
+    const SLOTS: usize = 3;
     const NEEDS_SPIN: bool = true;
+    const REVERSES: bool = true;
     const NAME: &'static str = "+coulomb";
 
     #[inline(always)]
     unsafe fn force<L: Lane>(
         &self,
-        normal: S::Vector<L>,
-        tangent: &Tangent<S, L>,
+        normal: V3<L>,
+        slide: &SpatialSlide<L>,
         elastic: L,
         active: L::Mask,
         dt: L,
         memory: *mut f64,
-    ) -> S::Vector<L> {
+    ) -> V3<L> {
         // SAFETY: the caller vouches for the slots.
-        let old: S::Vector<L> = unsafe { S::Vector::load(memory) };
-        let turned = S::twist(old, normal, tangent.turn);
-        let grown = turned.add_scaled(dt, tangent.slip);
+        let old: V3<L> = unsafe { V3::load(memory) };
+        let turned = twist(old, normal, slide.turn);
+        let grown = turned.add_scaled(dt, slide.slip);
         // The normal turned by dn: ξ loses its part along the new normal and gains half of it along dn.
         let along = grown.dot(normal);
         let half_turn = along.mul(dt).mul(L::splat(0.5));
-        let spring = grown.sub_scaled(along, normal).add_scaled(half_turn, tangent.normal_rate);
+        let spring = grown.sub_scaled(along, normal).add_scaled(half_turn, slide.normal_rate);
 
         let force = spring.scale(L::splat(self.kt));
         let bound = L::splat(self.mu).mul(elastic);

@@ -1,6 +1,6 @@
 //! No friction: no tangential force, no spins, no memory.
 
-use super::{Tangent, Tangential};
+use super::Tangential;
 use crate::lane::Lane;
 use crate::space::{Space, Vector};
 
@@ -11,19 +11,20 @@ pub struct Frictionless;
 impl<S: Space> Tangential<S> for Frictionless {
     const SLOTS: usize = 0;
     const NEEDS_SPIN: bool = false;
+    const REVERSES: bool = true;
     const NAME: &'static str = "";
 
     #[inline(always)]
     unsafe fn force<L: Lane>(
         &self,
         _: S::Vector<L>,
-        _: &Tangent<S, L>,
+        _: &S::Slide<L>,
         _: L,
         _: L::Mask,
         _: L,
         _: *mut f64,
-    ) -> S::Vector<L> {
-        S::Vector::zero()
+    ) -> S::Shear<L> {
+        S::Shear::zero()
     }
     fn stiffness(&self) -> f64 {
         0.0

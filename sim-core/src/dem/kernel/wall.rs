@@ -56,11 +56,11 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         }
         // SAFETY: see above.
         let response = unsafe { self.wall_law.evaluate(&geometry, &motion, L::splat(self.dt), memory) };
-        let force = response.tangential.sub_scaled(response.normal, normal);
+        let force = S::contact_force(normal, response.normal, response.tangential);
         let mut torque_a = none;
         if C::NEEDS_SPIN {
             let arm = L::splat(0.5).neg_mul_add(overlap, radius);
-            torque_a = S::moment(normal, response.tangential).scale(arm);
+            torque_a = S::couple(normal, response.tangential).scale(arm);
             if C::ROLLS {
                 torque_a = torque_a.add(response.rolling);
             }
