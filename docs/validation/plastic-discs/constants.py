@@ -39,7 +39,7 @@ def exponent(states, phi_c):
 
 
 elastic = load("elastic")
-for name in ("elastic", "h1", "h0"):
+for name in ("elastic", "h3", "h1", "h0"):
     states = load(name)
     onset = max(i for i, s in enumerate(states) if s["sigma"] <= 1e-4) + 1
     jammed = max(i for i, s in enumerate(states) if s["z"] < 4 or s["sigma"] <= 1e-4) + 1

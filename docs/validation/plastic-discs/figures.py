@@ -56,14 +56,15 @@ def panel(at, x_label, y_label, curves):
 def figure(name, panels, names):
     columns = min(2, len(panels))
     rows = (len(panels) + columns - 1) // columns
-    width, height = columns * W + 10, rows * H + 40
+    rows_of_names = (len(names) + 2 * columns - 1) // (2 * columns)
+    width, height = columns * W + 10, rows * H + 22 + 18 * rows_of_names
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}" font-family="sans-serif" font-size="12">', f'<rect width="{width}" height="{height}" fill="white"/>']
     for k, one in enumerate(panels):
         out += panel((k % columns * W, k // columns * H), *one)
     for k, key in enumerate(names):
-        x = 70 + 150 * k
-        out.append(f'<line x1="{x}" x2="{x + 24}" y1="{height - 20}" y2="{height - 20}" stroke="{COLORS[key]}" stroke-width="2"/>')
-        out.append(f'<text x="{x + 30}" y="{height - 16}">{NAMES[key]}</text>')
+        x, y = 70 + 150 * (k % (2 * columns)), height - 20 - 18 * (rows_of_names - 1 - k // (2 * columns))
+        out.append(f'<line x1="{x}" x2="{x + 24}" y1="{y}" y2="{y}" stroke="{COLORS[key]}" stroke-width="2"/>')
+        out.append(f'<text x="{x + 30}" y="{y + 4}">{NAMES[key]}</text>')
     with open(os.path.join(HERE, f"{name}.svg"), "w") as file:
         file.write("\n".join(out + ["</svg>", ""]))
 
