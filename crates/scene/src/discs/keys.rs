@@ -205,7 +205,7 @@ pub(super) const KEYS: &[Key] = &[
         unit: "tau",
         domain: Domain::Auto(&Domain::Real(Bound::Including(1e-4), Bound::Including(0.14))),
         absent: Absent::Default("\"auto\""),
-        meaning: "time step in √(m/K_N); \"auto\": 0.1; above 0.15 the scheme fails silently",
+        meaning: "time step in √(m/K_N); \"auto\": 0.1 or 0.16 (d_min/a)²/√(K_R/(K_N a²)) if that is less; above 0.15 the scheme fails silently",
         source: OURS,
     },
     Key {

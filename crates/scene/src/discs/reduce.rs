@@ -54,7 +54,7 @@ impl Description for Discs {
             },
             tolerance: round12(self.tolerance),
             final_damping: round12(self.final_damping),
-            dt: round12(self.dt.unwrap_or(STEP)),
+            dt: round12(self.dt.unwrap_or_else(|| self.automatic_step())),
             max_time: round12(self.max_time),
         }
     }
@@ -78,6 +78,14 @@ impl Discs {
     pub fn rolling_stiffness(&self) -> f64 {
         let length = if self.mu > 0.0 { self.mu_r / self.mu } else { 0.0 };
         self.kr.unwrap_or(length * length)
+    }
+
+    /// 0.1 √(m/K_N), or less where discs roll faster than that: the smallest one, of moment of inertia (d/a)⁴ m a²/8,
+    /// rolls on its contacts with ω² ≤ 2 z K_R/I. With z = 4 two over ω is (d/a)²/(4 √K_R); of that 0.64 is taken [τ].
+    fn automatic_step(&self) -> f64 {
+        let rolling = if self.mu > 0.0 && self.mu_r > 0.0 { self.rolling_stiffness() } else { 0.0 };
+        let smallest = self.size_ratio * self.size_ratio;
+        STEP.min(0.16 * smallest / libm::sqrt(rolling))
     }
 }
 
@@ -122,7 +130,10 @@ mod tests {
 
     #[test]
     fn large_rolling_resistance_is_stiff() {
-        assert_eq!(reduced(&json!({"mu_r": 0.5})).kr, 1.0);
+        let stiff = reduced(&json!({"mu_r": 0.5}));
+        assert_eq!((stiff.kr, stiff.dt), (1.0, 0.04));
+        assert_eq!(reduced(&json!({"mu_r": 0.05})).dt, 0.1);
+        assert_eq!(reduced(&json!({"mu_r": 0, "kr": 3})).dt, 0.1);
     }
 
     #[test]
