@@ -5,6 +5,7 @@ usage: collect.py SERVER NAME...        (for example collect.py http://127.0.0.1
 Writes beside this file
   states.csv   one row per equilibrium state: scene, observables, residuals
   forces.csv   P(F_N) of the states at P* = 0.01, 0.1, 1 and 13.3 on loading, mean over samples
+  scattering.csv   I(k) of type 2 at P* = 0 and 0.01, every sample
 Only the standard library is needed.
 """
 import collections
@@ -49,6 +50,7 @@ with open(HERE / "states.csv", "w", newline="") as file:
     out.writerows([short(row.get(name)) for name in SCENE + STATE + RUN] for row in rows)
 
 bins = collections.defaultdict(list)
+scattering = []
 for key, job in jobs.items():
     tables = json.loads(get(f"{server}/jobs/{job}/snapshot"))
     column = {c["name"]: c["values"] for c in tables["normal_forces"]["columns"]}
@@ -60,6 +62,15 @@ for key, job in jobs.items():
         near = [p for p in PRESSURES if abs(row["p"] / p - 1) < 1e-3]
         if near:
             bins[row["assembly"], row["mu_r"], near[0], round(force, 9)].append(density)
+    column = {c["name"]: c["values"] for c in tables["scattering"]["columns"]}
+    for state, k, intensity in zip(column["state"], column["k"], column["intensity"]):
+        row = states[key, int(state)]
+        if row["assembly"] == "type2" and row["branch"] in ("rest", "assembly"):
+            scattering.append([row["mu_r"], row["seed"], row["p"], short(k), short(intensity)])
+with open(HERE / "scattering.csv", "w", newline="") as file:
+    out = csv.writer(file, lineterminator="\n")
+    out.writerow(["mu_r", "seed", "p", "k", "intensity"])
+    out.writerows(sorted(scattering, key=lambda r: (r[0], r[1], r[2], float(r[3]))))
 with open(HERE / "forces.csv", "w", newline="") as file:
     out = csv.writer(file, lineterminator="\n")
     out.writerow(["assembly", "mu_r", "p", "normal_force", "density", "samples"])

@@ -1,4 +1,6 @@
-"""Prints the tables of README.md from states.csv and draws forces.svg and coordination.svg. Standard library only."""
+"""Prints the tables of README.md from states.csv and draws phi.svg, coordination.svg, elastic.svg and forces.svg.
+
+Standard library only."""
 import csv
 import math
 import pathlib
@@ -14,6 +16,22 @@ PAPER = {  # Table II: phi at the lowest pressure, and its scatter
     ("cohesionless", 0.005): (0.805, 0.002), ("type1", 0.005): (0.688, 0.001), ("type2", 0.005): (0.524, 0.008),
 }
 ORDER = [(a, m) for a in ("cohesionless", "type1", "type2") for m in (0.0, 0.005, 0.5)]
+
+
+# Table III of the paper: P*0, phi_0, lambda, alpha, P*1 of eq. (9).
+TABLE_3 = {0.0: (0.0237, 0.469, 0.349, 0.91, 0.271), 0.005: (0.0316, 0.515, 0.194, 1.08, 0.9),
+           0.5: (0.0178, 0.382, 0.25, 0.86, 2.6)}
+
+
+def consolidation(p, p0, phi_0, slope, alpha, p1):
+    """Eq. (9) of the paper."""
+    inside = p / p0 * (-math.expm1(-(p1 / p) ** alpha)) ** (1 / alpha)
+    return 1 / (1 / phi_0 - slope * math.log(inside))
+
+
+def trusted(row):
+    """Physics version 1 has moduli spoilt by round-off where a network has mechanisms (without rolling resistance)."""
+    return bool(row.get("bulk")) and (row["mu_r"] > 0 or int(row["physics_version"]) > 1)
 
 
 def series(assembly, mu_r, n=1400):
@@ -62,7 +80,7 @@ for mu_r in (0.0, 0.005, 0.5):
     print("|---|---|---|---|---|---|---|---|---|---|---|")
     for p in pressures:
         here = at(rows, p)
-        ok = [r for r in here if r.get("bulk")]
+        ok = [r for r in here if trusted(r)]
         print(f"| {p:.4g} | {len(here)} | {mean(r['phi'] for r in here)} | {mean(r['z'] for r in here)} | "
               f"{mean(r['z_plus'] for r in here)} | {mean(r['z_minus'] for r in here)} | "
               f"{mean(r['bulk'] for r in ok)} | {mean(r['shear'] for r in ok)} | "
@@ -96,15 +114,15 @@ for mu_r in (0.0, 0.005, 0.5):
 bad = [r for r in ROWS if r["converged"] not in ("True", "true")]
 print(f"\n{len(ROWS)} states, {len(bad)} not converged, "
       f"{sum(r['stiffness_sign'] != 1 for r in ROWS if 'stiffness_sign' in r)} whose stiffness matrix is not positive definite, "
-      f"{sum(r['bulk'] > r['bulk_voigt'] for r in ROWS if 'bulk' in r)} above the Voigt bound")
+      f"{sum(r['bulk'] > r['bulk_voigt'] for r in ROWS if trusted(r))} above the Voigt bound")
 
-COLORS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7"]
+COLORS = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"]
 
 
 class Plot:
     """One panel 560 × 400 as SVG text, x linear or logarithmic."""
 
-    def __init__(self, title, xlabel, ylabel, xs, ys, logx=False, logy=False):
+    def __init__(self, title, xlabel, ylabel, xs, ys, logx=False, logy=False, legend=52):
         self.fx, self.fy = (math.log10 if logx else float), (math.log10 if logy else float)
         self.logx, self.logy = logx, logy
         self.x0, self.x1 = self.fx(min(xs)), self.fx(max(xs))
@@ -125,7 +143,7 @@ class Plot:
             label = f"{10 ** value:g}" if logy else f"{value:g}"
             self.parts += [f'<line x1="70" y1="{y:.1f}" x2="75" y2="{y:.1f}" stroke="#444"/>',
                            f'<text x="64" y="{y + 4:.1f}" text-anchor="end">{label}</text>']
-        self.names = 0
+        self.names, self.legend = 0, legend
 
     @staticmethod
     def ticks(low, high, log):
@@ -147,9 +165,9 @@ class Plot:
                           + " ".join(f"{x:.1f},{y:.1f}" for x, y in at) + '"/>')
         if dots:
             self.parts += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="2.5" fill="{color}"/>' for x, y in at]
-        y = 52 + 16 * self.names
-        self.parts += [f'<line x1="440" y1="{y}" x2="464" y2="{y}" stroke="{color}" stroke-width="2"/>',
-                       f'<text x="470" y="{y + 4}">{name}</text>']
+        y = self.legend + 16 * self.names
+        self.parts += [f'<line x1="390" y1="{y}" x2="414" y2="{y}" stroke="{color}" stroke-width="2"/>',
+                       f'<text x="420" y="{y + 4}">{name}</text>']
         self.names += 1
 
     def save(self, name):
@@ -163,13 +181,31 @@ def curve(rows, column):
     return [(p, statistics.fmean(r[column] for r in at(rows, p))) for p in pressures]
 
 
-curves = [(f"μR/a = {m:g}", curve(series("type2", m), "z")) for m in (0.0, 0.005, 0.5) if series("type2", m)]
-every = [point for _, points in curves for point in points]
-plot = Plot("Coordination number on first loading, type 2", "P* = aP/F0", "z",
-            [x for x, _ in every], [y for _, y in every], logx=True)
-for (name, points), color in zip(curves, COLORS):
-    plot.line(name, points, color)
-plot.save("coordination.svg")
+def draw(name, title, ylabel, curves, logy=False, lines=()):
+    every = [point for _, points in curves for point in points]
+    if not every:
+        return
+    plot = Plot(title, "P* = aP/F0", ylabel, [x for x, _ in every], [y for _, y in every], logx=True, logy=logy,
+                legend=290)
+    for (label, points), color in zip(curves, COLORS):
+        plot.line(label, points, color)
+    for (label, points), color in lines:
+        plot.line(label, [(x, y) for x, y in points if plot.y0 <= y <= plot.y1], color, dots=False)
+    plot.save(name)
+
+
+present = [m for m in (0.0, 0.005, 0.5) if at(series("type2", m), 0.01)]
+label = {m: f"μR/a = {m:g}, {len(at(series('type2', m), 0.01))} samples" for m in present}
+draw("coordination.svg", "Coordination number on first loading, type 2", "z",
+     [(label[m], curve(series("type2", m), "z")) for m in present])
+draw("phi.svg", "Consolidation of type 2; thin: Table III of the paper", "Φ",
+     [(label[m], curve(series("type2", m), "phi")) for m in present],
+     lines=[((f"paper, {m:g}", [(p, consolidation(p, *TABLE_3[m])) for p in (10 ** (e / 16 - 2) for e in range(51))
+                                if p > TABLE_3[m][0]]), "#999999") for m in present])
+draw("elastic.svg", "Elastic moduli on first loading, type 2", "modulus [K_N]",
+     [(f"{symbol}, μR/a = {m:g}", curve([r for r in series("type2", m) if trusted(r)], column))
+      for m in present for symbol, column in (("B", "bulk"), ("G", "shear")) if any(map(trusted, series("type2", m)))],
+     logy=True)
 
 with open(HERE / "forces.csv") as file:
     FORCES = [r for r in csv.DictReader(file) if r["assembly"] == "type2" and float(r["mu_r"]) == 0.005]

@@ -1,0 +1,60 @@
+"""How d_F and ξ depend on the function and the range of the fit to I(k): reads scattering.csv, prints a table.
+
+smooth  I_0 [1 + (kξ/2π)²]^(−d_F/2), the function of the service
+broken  I_0 for k < 2π/ξ, I_0 (kξ/2π)^(−d_F) above: the words of the 2008 study, section IV
+Least squares in ln I, shells weighted by k as by their number of wave vectors. Standard library only.
+"""
+import collections
+import csv
+import math
+import pathlib
+import statistics
+
+HERE = pathlib.Path(__file__).parent
+samples = collections.defaultdict(list)
+with open(HERE / "scattering.csv") as file:
+    for row in csv.DictReader(file):
+        samples[float(row["mu_r"]), float(row["p"]), int(row["seed"])].append((float(row["k"]), float(row["intensity"])))
+
+
+def smooth(x):
+    return 0.5 * math.log1p(x * x)
+
+
+def broken(x):
+    return max(0.0, math.log(x))
+
+
+def cost(shells, shape, xi):
+    """Best slope at this ξ by linear regression of ln I on the shape: (cost, d_F)."""
+    rows = [(k, shape(k * xi / (2 * math.pi)), math.log(intensity)) for k, intensity in shells]
+    total = sum(k for k, _, _ in rows)
+    mx = sum(k * x for k, x, _ in rows) / total
+    my = sum(k * y for k, _, y in rows) / total
+    sxx = sum(k * (x - mx) ** 2 for k, x, _ in rows)
+    if sxx == 0:
+        return math.inf, 0.0
+    slope = sum(k * (x - mx) * (y - my) for k, x, y in rows) / sxx
+    return sum(k * (y - my - slope * (x - mx)) ** 2 for k, x, y in rows) / total, -slope
+
+
+def fit(shells, shape):
+    lengths = [2 * 1.01 ** n for n in range(320)]
+    best = min(lengths, key=lambda xi: cost(shells, shape, xi)[0])
+    error, dimension = cost(shells, shape, best)
+    return best, dimension, math.sqrt(error)
+
+
+def told(values):
+    if len(values) == 1:
+        return f"{values[0]:.2f}"
+    return f"{statistics.fmean(values):.2f} ± {statistics.stdev(values) / math.sqrt(len(values)):.2f}"
+
+
+print("| μ_R/a | P* | k below [1/a] | function | samples | d_F | ξ [a] | rms of ln I |\n|---|---|---|---|---|---|---|---|")
+for mu_r, p in sorted({key[:2] for key in samples}):
+    for largest in (2.0, math.pi, 4.5, 6.3):
+        for shape in (smooth, broken):
+            found = [fit([s for s in samples[key] if s[0] <= largest], shape) for key in sorted(samples) if key[:2] == (mu_r, p)]
+            print(f"| {mu_r:g} | {p:g} | {largest:.2f} | {shape.__name__} | {len(found)} | {told([f[1] for f in found])} | "
+                  f"{told([f[0] for f in found])} | {told([f[2] for f in found])} |")
