@@ -59,22 +59,20 @@ for tolerance, cap in [(t, 0.05) for t in tolerances] + [(1.0, c) for c in caps 
     if cap == 0.05 and tolerance > tolerances[0]:
         errors.append((steps / 1000, statistics.fmean(abs(v) for v in change("phi")), statistics.fmean(abs(v) for v in change("z")), tolerance))
 
-parts = ['<text x="330" y="22" text-anchor="middle" font-size="15">Error of an equilibrium state against its steps, type 1, N = 400</text>',
-         '<text x="330" y="436" text-anchor="middle">thousand steps</text>', '<rect x="70" y="35" width="520" height="360" fill="none" stroke="#444"/>']
-xs = [e[0] for e in errors]
-low, high = min(xs) * 0.9, max(xs) * 1.05
-px = lambda x: 70 + 520 * (x - low) / (high - low)
-py = lambda y: 395 - 360 * (math.log10(max(y, 1e-10)) + 10) / 10
-for decade in range(-10, 1, 2):
-    parts.append(f'<text x="64" y="{py(10 ** decade) + 4:.1f}" text-anchor="end">1e{decade}</text>')
-for x in xs:
-    parts.append(f'<text x="{px(x):.1f}" y="412" text-anchor="middle">{x:.0f}</text>')
+parts = ['<text x="330" y="22" text-anchor="middle" font-size="15">Error of an equilibrium state and steps to it, type 1, N = 400</text>',
+         '<text x="330" y="436" text-anchor="middle">tolerance over the paper&#39;s</text>',
+         '<rect x="70" y="35" width="520" height="360" fill="none" stroke="#444"/>']
+px = lambda x: 110 + 140 * math.log10(x)
+py = lambda y: 385 - 340 * (math.log10(max(y, 1e-11)) + 11) / 12
+for decade in range(-10, 2, 2):
+    parts.append(f'<text x="64" y="{py(10.0 ** decade) + 4:.1f}" text-anchor="end">1e{decade}</text>')
+for steps, _, _, tolerance in errors:
+    parts.append(f'<text x="{px(tolerance):.1f}" y="412" text-anchor="middle">{tolerance:g}</text>')
+    parts.append(f'<text x="{px(tolerance):.1f}" y="50" text-anchor="middle">{steps:.0f} 000 steps</text>')
 for column, name, color in ((1, "|Φ − Φ_tight|", "#0072B2"), (2, "|z − z_tight|", "#D55E00")):
-    for e in errors:
-        parts.append(f'<circle cx="{px(e[0]):.1f}" cy="{py(e[column]):.1f}" r="3" fill="{color}"/>')
-    parts.append('<polyline fill="none" stroke="' + color + '" points="' + " ".join(f"{px(e[0]):.1f},{py(e[column]):.1f}" for e in errors) + '"/>')
-    parts.append(f'<text x="470" y="{36 + 18 * column}" fill="{color}">{name}</text>')
-for e in errors:
-    parts.append(f'<text x="{px(e[0]):.1f}" y="{py(e[2]) - 8:.1f}" text-anchor="middle">{e[3]:g}</text>')
+    seen = [e for e in errors if e[column] > 0]
+    parts += [f'<circle cx="{px(e[3]):.1f}" cy="{py(e[column]):.1f}" r="3" fill="{color}"/>' for e in seen]
+    parts.append(f'<polyline fill="none" stroke="{color}" points="' + " ".join(f"{px(e[3]):.1f},{py(e[column]):.1f}" for e in seen) + '"/>')
+    parts.append(f'<text x="470" y="{320 + 18 * column}" fill="{color}">{name}</text>')
 (HERE / "tolerance.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg" width="610" height="446" font-family="sans-serif" '
                                     'font-size="12"><rect width="100%" height="100%" fill="#fff"/>\n' + "\n".join(parts) + "\n</svg>\n")

@@ -186,8 +186,9 @@ fn negative_pivots(symbolic: &SymbolicCholesky<usize>, values: &[f64]) -> usize 
     let SymbolicCholeskyRaw::Simplicial(structure) = symbolic.raw() else {
         unreachable!("the simplicial factorisation was asked for");
     };
-    // The diagonal of the unit triangle holds the pivot; written so that a NaN counts as negative.
-    structure.col_ptr()[..structure.ncols()].iter().filter(|&&first| !(values[first] >= 0.0)).count()
+    let counts = |pivot: f64| pivot < 0.0 || pivot.is_nan();
+    // The diagonal of the unit triangle holds the pivot.
+    structure.col_ptr()[..structure.ncols()].iter().filter(|&&first| counts(values[first])).count()
 }
 
 #[cfg(test)]
