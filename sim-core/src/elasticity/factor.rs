@@ -12,8 +12,9 @@ use faer::{Conj, MatMut, Par, Side, Spec};
 use super::moduli::ElasticError;
 
 /// Eigenvalues within this part of the largest diagonal element of zero count as zero: far above round-off, which an
-/// elimination amplifies by the inverse of the softest stiffness, and below the softest bending mode of the loosest
-/// network (about 1e-6).
+/// elimination amplifies by the inverse of the softest stiffness, and below the softest mode of networks under load.
+/// Loose networks at P = 0 may bend more softly still (K_R/K_N = 1e-4, chains of dozens of discs): such modes count as
+/// free, and what they add to the compliance may be missed.
 const ZERO: f64 = 1e-9;
 
 /// Largest number of refinements of a solution: the error of a mode of stiffness λ shrinks to δ/(λ + δ) with each, δ the
