@@ -18,7 +18,9 @@ pub mod real;
 pub mod setup;
 pub mod simulation;
 pub mod skyline;
+pub mod spline;
 pub mod template;
+pub mod updated;
 pub mod world;
 
 pub use explain::explain;

@@ -52,6 +52,30 @@ pub enum Method {
     Explicit,
 }
 
+/// How the motion is discretised.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Variant {
+    /// Body-fitted bilinear cells in the undeformed configuration.
+    #[default]
+    TotalBilinear,
+    /// Cubic splines on a regular grid in the undeformed configuration.
+    TotalCubic,
+    /// Cubic splines on a regular grid that is new at every step, one grid per particle: the paper's method.
+    UpdatedCubic,
+}
+
+/// Between what contact acts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Contact {
+    /// Markers on the true outlines, by their gap.
+    #[default]
+    Markers,
+    /// Nodes of a common mesh, by their velocities: the paper's multi-mesh contact.
+    CommonMesh,
+}
+
 /// How strain and rotation are read from the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -102,6 +126,10 @@ pub struct Plastic {
     pub strain_end: Option<f64>,
     /// How the motion is integrated.
     pub method: Method,
+    /// How the motion is discretised.
+    pub variant: Variant,
+    /// Between what contact acts.
+    pub contact: Contact,
     /// Time step [s]; `None`: by the speed of the wall, or the stable one of the explicit method.
     pub dt: Option<f64>,
     /// Time integration parameter θ [1].
@@ -146,6 +174,12 @@ pub struct ReducedPlastic {
     pub strain_end: f64,
     /// How the motion is integrated.
     pub method: Method,
+    /// How the motion is discretised; left out where it is the default, so that older keys stay.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub variant: Variant,
+    /// Between what contact acts; left out likewise.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub contact: Contact,
     /// Time step [d √(ρ/E)]; `None`: by the speed of the wall, or the stable one of the explicit method.
     pub dt: Option<f64>,
     /// Time integration parameter θ [1].
@@ -158,4 +192,8 @@ pub struct ReducedPlastic {
     pub f_bar: bool,
     /// Nominal strain between two recorded states [1].
     pub strain_step: f64,
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }

@@ -114,3 +114,20 @@ fn the_model_is_named() {
     let near = problems(&json!({"model": "cohesive_sphere"})).remove(0);
     assert!(near.remedy.contains("did you mean \"cohesive_spheres\""), "{near:?}");
 }
+
+#[test]
+fn variants_of_plastic_discs_that_do_not_go_together_are_refused() {
+    let one = |scene: Value| {
+        let mut found = problems(&scene);
+        assert_eq!(found.len(), 1, "{found:?}");
+        found.remove(0)
+    };
+    let explicit = one(json!({"model": "plastic_discs", "method": "explicit", "variant": "updated_cubic"}));
+    assert_eq!((explicit.field.as_str(), explicit.value.as_str()), ("variant", "\"updated_cubic\""));
+    assert!(explicit.remedy.contains("total_bilinear"));
+    let mesh = one(json!({"model": "plastic_discs", "contact": "common_mesh", "variant": "total_cubic"}));
+    assert_eq!(mesh.field, "contact");
+    assert!(mesh.remedy.contains("updated_cubic"));
+    let word = one(json!({"model": "plastic_discs", "variant": "updated_bilinear"}));
+    assert!(word.field == "variant" && word.remedy.contains("updated_cubic"), "{word:?}");
+}

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::constitutive::Material;
 use super::plane::{Mat2, Stress};
 use super::template::Template;
+use super::updated::Cloud;
 
 /// State of the material points.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +49,11 @@ pub struct Body {
     pub mass: Vec<f64>,
     /// Unknowns held at rest (planes of symmetry, clamped ends).
     pub fixed: Vec<u32>,
+    /// Undeformed area.
+    pub area: f64,
+    /// What the points of an updated Lagrangian body carry from grid to grid; its template and nodal values last for one
+    /// step. `None`: total Lagrangian.
+    pub cloud: Option<Box<Cloud>>,
 }
 
 impl Body {
@@ -58,6 +64,8 @@ impl Body {
         let unknowns = 2 * template.nodes.len();
         let points = Points::virgin(template.point_count());
         Self {
+            area: template.volumes.iter().sum::<f64>() * size * size,
+            cloud: None,
             size,
             origin,
             displacement: vec![0.0; unknowns],

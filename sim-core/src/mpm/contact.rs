@@ -4,9 +4,21 @@
 
 pub mod detect;
 pub mod gauss_seidel;
+pub mod nodes;
 pub mod rows;
 
 use serde::{Deserialize, Serialize};
+
+/// Between what contact acts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ContactKind {
+    /// Markers on the true outlines against outlines and walls, by their gap.
+    #[default]
+    Markers,
+    /// Nodes that two bodies share on a common mesh, by their velocities alone: the paper's multi-mesh contact, which
+    /// acts at a distance of a few cells.
+    CommonMesh,
+}
 
 /// A rigid plane of infinite mass.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -35,11 +47,12 @@ pub struct Key {
     pub body: u32,
     /// What it faces.
     pub partner: Partner,
-    /// The marker.
+    /// The marker, or the shared node of a common mesh.
     pub marker: u32,
 }
 
-/// A candidate contact.
+/// A candidate contact. On a common mesh the gap is the way the two sides part within the step, and the segment is the
+/// partner's node.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Candidate {
     /// Identity.

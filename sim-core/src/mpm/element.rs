@@ -1,12 +1,14 @@
 //! Internal forces and tangent of a body: Σ_p V_p σ_p ∇N_a, with cell-mean volume change (F-bar) against locking.
 
 mod force;
+mod ghost;
 mod lanes;
 mod tangent;
 
 use serde::{Deserialize, Serialize};
 
 pub use force::{force_of_state, internal_force};
+pub use ghost::add_force as add_ghost_force;
 pub use lanes::{advance_points, advance_points_plain};
 pub use tangent::internal_force_and_tangent;
 

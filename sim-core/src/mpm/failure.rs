@@ -13,6 +13,11 @@ pub enum Failure {
         /// The body.
         body: usize,
     },
+    /// Contact met a part of the outline that was far from everything at the start of the step.
+    OutOfReach {
+        /// The body.
+        body: usize,
+    },
     /// Newton's iteration did not reach the tolerance.
     Residual {
         /// Force residual relative to the forces.
@@ -27,6 +32,7 @@ impl std::fmt::Display for Failure {
         match self {
             Self::Inverted { body } => write!(out, "a material point of body {body} was crushed"),
             Self::Indefinite { body } => write!(out, "the tangent of body {body} is not positive definite"),
+            Self::OutOfReach { body } => write!(out, "body {body} moved by more than a cell in one step"),
             Self::Residual { residual, gap } => {
                 write!(out, "relative force residual {residual:.1e}, worst gap error {gap:.1e} cells")
             }

@@ -11,11 +11,14 @@ use rayon::prelude::*;
 use super::body::{Body, Points};
 use super::contact::detect::{Outline, candidates};
 use super::contact::gauss_seidel::{self, Tolerance};
+use super::contact::nodes;
 use super::contact::rows::Rows;
-use super::contact::{Candidate, Key, Wall};
-use super::element::{Law, force_of_state, internal_force, internal_force_and_tangent};
+use super::contact::{Candidate, ContactKind, Key, Partner, Wall};
+use super::element::{Law, add_ghost_force, force_of_state, internal_force, internal_force_and_tangent};
 use super::failure::Failure;
 use super::skyline::Skyline;
+use super::template::OUT_OF_REACH;
+use super::updated;
 use super::world::World;
 
 /// Residual ratio of two iterations above which old factors are given up.
@@ -54,7 +57,7 @@ impl Implicit {
     /// Scratch space for a world.
     #[must_use]
     pub fn new(world: &World) -> Self {
-        let work = world.bodies.iter().map(Work::new).collect();
+        let work = world.bodies.iter().map(|body| Work::new(body, &world.law)).collect();
         let sizes: Vec<usize> =
             world.bodies.iter().map(|body| body.template.profile.contact_size()).collect();
         let n = world.bodies.len();
@@ -118,14 +121,15 @@ impl Implicit {
         let mut fresh = true;
         for iteration in 0..=numerics.iterations {
             self.linearise(world, dt, fresh)?;
-            self.detect(world, &walls, 0.3 * cell);
-            self.rows.build(&self.candidates, &world.bodies, &walls, &warm);
+            self.detect(world, &walls, 0.3 * cell, advance)?;
+            self.rows.build(&self.candidates, &world.bodies, &walls, &warm, world.contact);
             let (residual, gap) = self.errors(world, dt, cell);
             let slow = residual > SLOW * worst.0;
             worst = (residual, gap);
             if iteration > 0 && residual <= numerics.residual && gap <= numerics.gap {
                 world.effort.newton += iteration as u64;
                 self.commit(world, walls, dt);
+                self.regrid(world);
                 return Ok(());
             }
             if iteration == numerics.iterations {
@@ -200,7 +204,35 @@ impl Implicit {
         }))
     }
 
-    fn detect(&mut self, world: &World, walls: &[Wall], range: f64) {
+    /// New grids for bodies whose grid lasts for one step.
+    fn regrid(&mut self, world: &mut World) {
+        if world.bodies.iter().all(|body| body.cloud.is_none()) {
+            return;
+        }
+        world.bodies.par_iter_mut().for_each(updated::carry);
+        updated::regrid(world);
+        let law = &world.law;
+        self.work
+            .par_iter_mut()
+            .zip(&world.bodies)
+            .filter(|(_, body)| body.cloud.is_some())
+            .for_each(|(work, body)| *work = Work::new(body, law));
+        for (number, body) in world.bodies.iter().enumerate() {
+            let size = body.template.profile.contact_size();
+            self.sizes[number] = size;
+            self.contact_velocity[number].resize(size, 0.0);
+            self.contact_impulse[number].resize(size, 0.0);
+        }
+    }
+
+    /// Candidate contacts at the present velocities.
+    fn detect(&mut self, world: &World, walls: &[Wall], range: f64, advance: f64) -> Result<(), Failure> {
+        if world.contact == ContactKind::CommonMesh {
+            let velocities: Vec<&[f64]> = self.work.iter().map(|work| work.velocity.as_slice()).collect();
+            let lists = self.candidates.par_iter_mut().enumerate();
+            lists.for_each(|(body, list)| nodes::candidates(body, world, &velocities, advance, list));
+            return Ok(());
+        }
         let shapes = self.outlines.par_iter_mut().zip(&world.bodies).zip(&self.work);
         shapes.for_each(|((outline, body), work)| {
             body.outline_at(&work.displacement, &mut outline.points);
@@ -211,6 +243,12 @@ impl Implicit {
             .par_iter_mut()
             .enumerate()
             .for_each(|(body, list)| candidates(body, outlines, walls, range, list));
+        if world.bodies.iter().all(|body| body.cloud.is_none()) {
+            return Ok(());
+        }
+        let beyond =
+            self.candidates.iter().flatten().find_map(|candidate| beyond_reach(candidate, &world.bodies));
+        beyond.map_or(Ok(()), |body| Err(Failure::OutOfReach { body }))
     }
 
     /// Relative force residual with the present impulses, and worst overlap or gap under load in cells.
@@ -254,9 +292,11 @@ impl Implicit {
             for (unknown, mass) in body.mass.iter().flat_map(|mass| [mass, mass]).enumerate() {
                 work.matrix.add(profile.entry(unknown, unknown), *mass);
             }
+            // a node that no point reaches has no mass of its own
+            let least = 1e-6 * body.area * world.law.material.density;
             for &unknown in &body.fixed {
                 let unknown = unknown as usize;
-                work.matrix.add(profile.entry(unknown, unknown), RIGID * body.mass[unknown / 2]);
+                work.matrix.add(profile.entry(unknown, unknown), RIGID * body.mass[unknown / 2].max(least));
             }
             work.matrix.factorise(profile).map_err(|_| Failure::Indefinite { body: number })?;
             work.matrix.contact_compliance(profile, compliance);
@@ -321,11 +361,12 @@ impl Implicit {
 }
 
 impl Work {
-    fn new(body: &Body) -> Self {
+    fn new(body: &Body, law: &Law) -> Self {
         let n = body.displacement.len();
         let zero = || vec![0.0; n];
         let mut start_force = zero();
         force_of_state(body, &mut start_force);
+        add_ghost_force(body, &body.displacement, law, &mut start_force);
         Self {
             velocity: zero(),
             free: zero(),
@@ -340,9 +381,23 @@ impl Work {
     }
 }
 
+/// The body, if any, that a candidate would act on where its factor has no contact rows.
+fn beyond_reach(candidate: &Candidate, bodies: &[Body]) -> Option<usize> {
+    let own = candidate.key.body as usize;
+    if !bodies[own].template.reaches(candidate.key.marker) {
+        return Some(own);
+    }
+    let Partner::Body(other) = candidate.key.partner else { return None };
+    let template = &bodies[other as usize].template;
+    let next = (candidate.segment + 1) % template.markers.len() as u32;
+    let both = template.reaches(candidate.segment) && template.reaches(next);
+    (!both).then_some(other as usize)
+}
+
 /// The values of the contact unknowns in the order of their rows.
 fn gather_contact(body: &Body, values: &[f64], out: &mut [f64]) {
-    for (&node, &row) in body.template.contact_nodes.iter().zip(&body.template.contact_rows) {
+    let rows = body.template.contact_nodes.iter().zip(&body.template.contact_rows);
+    for (&node, &row) in rows.filter(|(_, row)| **row != OUT_OF_REACH) {
         out[row as usize] = values[2 * node as usize];
         out[row as usize + 1] = values[2 * node as usize + 1];
     }

@@ -2,14 +2,16 @@
 
 use std::sync::Arc;
 
-use scene::plastic::{ReducedPlastic, Rotation, Setup};
+use scene::plastic::{Contact, ReducedPlastic, Rotation, Setup, Variant};
 
 use super::body::Body;
 use super::constitutive::{Hardening, Kinematics, Material};
-use super::contact::Wall;
+use super::contact::{ContactKind, Wall};
 use super::element::Law;
 use super::packing::{diameters, pack};
-use super::template::{disc, symmetric_disc};
+use super::spline;
+use super::template::{Template, cubic_disc, disc, symmetric_cubic_disc, symmetric_disc};
+use super::updated;
 use super::world::World;
 use crate::SimError;
 
@@ -36,7 +38,7 @@ pub struct Scenery {
 /// [`SimError::Scene`] when an assembly cannot be packed as loosely as asked.
 pub fn build(scene: &ReducedPlastic) -> Result<Scenery, SimError> {
     let law = law(scene);
-    let across = usize::try_from(scene.cells).expect("at most 64");
+    let shapes = Shapes::new(scene, &law);
     match scene.setup {
         Setup::Assembly => {
             let n = usize::try_from(scene.n).expect("at most 10000");
@@ -49,10 +51,8 @@ pub fn build(scene: &ReducedPlastic) -> Result<Scenery, SimError> {
                 ),
                 remedy: "lower phi_i".to_owned(),
             })?;
-            let template = Arc::new(disc(across));
             let places = packing.radii.iter().zip(&packing.centres);
-            let bodies =
-                places.map(|(&r, &centre)| Body::new(template.clone(), r, centre, &law.material)).collect();
+            let bodies = places.map(|(&r, &centre)| shapes.body(r, centre)).collect();
             let (width, height) = (packing.width, packing.height);
             let walls = [level(0.0, 1.0, 0.0), level(height, -1.0, -scene.wall_speed)]
                 .into_iter()
@@ -61,14 +61,13 @@ pub fn build(scene: &ReducedPlastic) -> Result<Scenery, SimError> {
             Ok(finished(World::new(bodies, walls, law), scene, width, height))
         }
         Setup::Diametrical => {
-            let body = Body::new(Arc::new(disc(across)), 0.5, [0.0, 0.5], &law.material);
+            let body = shapes.body(0.5, [0.0, 0.5]);
             let walls = vec![level(0.0, 1.0, 0.0), level(1.0, -1.0, -scene.wall_speed)];
             Ok(finished(World::new(vec![body], walls, law), scene, 1.0, 1.0))
         }
         Setup::Cell => {
             // without friction nothing but the mesh would hold the spin of the disc
-            let mut body = Body::new(Arc::new(symmetric_disc(across)), 0.5, [0.0, 0.0], &law.material);
-            body.hold_symmetric();
+            let body = shapes.body(0.5, [0.0, 0.0]);
             let half = 0.5 * scene.wall_speed;
             let walls = [level(-0.5, 1.0, half), level(0.5, -1.0, -half)]
                 .into_iter()
@@ -79,9 +78,58 @@ pub fn build(scene: &ReducedPlastic) -> Result<Scenery, SimError> {
     }
 }
 
+/// The bodies of a scene: one shape, or one grid for all.
+struct Shapes {
+    /// Shape of total Lagrangian bodies.
+    template: Option<Arc<Template>>,
+    /// Distance of nodes of the grids of updated Lagrangian bodies.
+    spacing: f64,
+    symmetric: bool,
+    law: Law,
+}
+
+impl Shapes {
+    fn new(scene: &ReducedPlastic, law: &Law) -> Self {
+        let across = usize::try_from(scene.cells).expect("at most 64");
+        let symmetric = scene.setup == Setup::Cell;
+        let template = match (scene.variant, symmetric) {
+            (Variant::TotalBilinear, false) => Some(disc(across)),
+            (Variant::TotalBilinear, true) => Some(symmetric_disc(across)),
+            (Variant::TotalCubic, false) => Some(cubic_disc(across)),
+            (Variant::TotalCubic, true) => Some(symmetric_cubic_disc(across)),
+            (Variant::UpdatedCubic, _) => None,
+        };
+        Self { template: template.map(Arc::new), spacing: 1.0 / across as f64, symmetric, law: *law }
+    }
+
+    fn body(&self, radius: f64, centre: [f64; 2]) -> Body {
+        let material = &self.law.material;
+        let Some(template) = &self.template else {
+            let fill = spline::disc(centre, radius, self.spacing);
+            let turn = if self.symmetric { 0.0 } else { 0.25 };
+            let markers = spline::circle(centre, radius, self.spacing, turn);
+            let mut body = updated::body(fill, markers, self.spacing, radius, centre, material);
+            if let Some(cloud) = &mut body.cloud {
+                cloud.held = [self.symmetric; 2];
+            }
+            return body;
+        };
+        let mut body = Body::new(template.clone(), radius, centre, material);
+        if self.symmetric {
+            body.hold_symmetric();
+        }
+        body
+    }
+}
+
 fn finished(mut world: World, scene: &ReducedPlastic, width: f64, height: f64) -> Scenery {
     world.friction = scene.mu;
     world.numerics.theta = scene.theta;
+    world.contact = match scene.contact {
+        Contact::Markers => ContactKind::Markers,
+        Contact::CommonMesh => ContactKind::CommonMesh,
+    };
+    updated::regrid(&mut world);
     Scenery { world, width, height }
 }
 

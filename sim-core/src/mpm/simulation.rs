@@ -6,7 +6,7 @@ mod outcome;
 use std::collections::VecDeque;
 
 use record::{Outcome, Row};
-use scene::plastic::{Method, ReducedPlastic, Setup};
+use scene::plastic::{Contact, Method, ReducedPlastic, Setup, Variant};
 use serde::{Deserialize, Serialize};
 
 use super::explicit::{Explicit, flush};
@@ -244,7 +244,16 @@ pub(super) fn kernel(scene: &ReducedPlastic) -> String {
         Method::Implicit => "implicit",
         Method::Explicit => "explicit",
     };
-    format!("mpm2d+total_lagrangian+bilinear{bar}+{material}+{method}+markers+{friction}")
+    let variant = match scene.variant {
+        Variant::TotalBilinear => "total_lagrangian+bilinear",
+        Variant::TotalCubic => "total_lagrangian+cubic",
+        Variant::UpdatedCubic => "updated_lagrangian+cubic",
+    };
+    let contact = match scene.contact {
+        Contact::Markers => "markers",
+        Contact::CommonMesh => "common_mesh",
+    };
+    format!("mpm2d+{variant}{bar}+{material}+{method}+{contact}+{friction}")
 }
 
 /// Continues from a checkpoint.

@@ -4,9 +4,11 @@
 mod block;
 mod disc;
 mod order;
+mod spline;
 
 pub use block::block;
-pub use disc::{disc, symmetric_disc};
+pub use disc::{cubic_disc, disc, symmetric_cubic_disc, symmetric_disc};
+pub use spline::{Reach, Scatter, nodes, order as cell_order, spline};
 
 use super::real::Quad;
 use super::skyline::Profile;
@@ -32,19 +34,27 @@ pub struct Template {
     pub lumped: Vec<f64>,
     /// Outline markers, counter-clockwise.
     pub markers: Vec<Marker>,
-    /// The nodes the markers hang on; markers name them by their place in this list.
+    /// The nodes that markers hang on or contact acts on; markers name them by their place in this list.
     pub contact_nodes: Vec<u32>,
     /// Elimination order of the degrees of freedom and fill of the factor; contact nodes come last.
     pub profile: Profile,
     /// Place in the matrix of every entry of a cell's lower triangle, row by row.
     pub entries: Vec<u32>,
-    /// Place in the contact block of component x of each contact node; y follows.
+    /// Place in the contact block of component x of each contact node; y follows. [`OUT_OF_REACH`] for nodes that
+    /// contact does not act on.
     pub contact_rows: Vec<u32>,
+    /// Rows of three neighbouring nodes with a weak one among them, for the ghost penalty; empty where cells fit.
+    pub ghost: Vec<[u32; 3]>,
+    /// Grid indices of the nodes, sorted by (j, i); empty where the mesh is not a regular grid.
+    pub grid: Vec<[i32; 2]>,
     /// Typical cell width.
     pub cell: f64,
     /// Gradients and volumes of bilinear cells, four points side by side; empty for other functions.
     pub lanes: Vec<Lanes>,
 }
+
+/// Contact row of a node that contact does not act on.
+pub const OUT_OF_REACH: u32 = u32::MAX;
 
 /// A bilinear cell with its points side by side.
 #[derive(Clone, Copy, Debug)]
@@ -60,6 +70,29 @@ pub struct Lanes {
 pub struct Marker {
     /// Index into [`Template::contact_nodes`] and weight; the weights sum to one.
     pub weights: Vec<(u32, f64)>,
+}
+
+/// What every family of functions provides; the rest follows.
+struct Raw {
+    nodes: Vec<[f64; 2]>,
+    nodes_per_cell: usize,
+    cells: Vec<u32>,
+    first_point: Vec<u32>,
+    gradients: Vec<[f64; 2]>,
+    values: Vec<f64>,
+    volumes: Vec<f64>,
+    /// Markers as node weights, node numbers still global.
+    outline: Vec<Vec<(u32, f64)>>,
+    cell: f64,
+    elimination: Elimination,
+}
+
+/// Order of elimination.
+enum Elimination {
+    /// From the far inside outwards; contact acts on every node of a marker.
+    InteriorFirst,
+    /// By number, row after row of a grid, the nodes that contact acts on last.
+    AsNumbered(Vec<bool>),
 }
 
 /// Parts of a template that a shape must provide; the rest follows.
@@ -102,21 +135,30 @@ impl Template {
         volumes.iter_mut().for_each(|volume| *volume *= scale);
         let first_point = (0..=cells.len()).map(|cell| 4 * cell as u32).collect();
         let cells: Vec<u32> = cells.into_iter().flatten().collect();
-        Self::assemble(nodes, 4, cells, first_point, gradients, values, volumes, markers, cell)
+        Self::assemble(Raw {
+            nodes,
+            nodes_per_cell: 4,
+            cells,
+            first_point,
+            gradients,
+            values,
+            volumes,
+            outline: markers,
+            cell,
+            elimination: Elimination::InteriorFirst,
+        })
     }
 
-    #[expect(clippy::too_many_arguments, reason = "one call per family of shape functions")]
-    fn assemble(
-        nodes: Vec<[f64; 2]>,
-        nodes_per_cell: usize,
-        cells: Vec<u32>,
-        first_point: Vec<u32>,
-        gradients: Vec<[f64; 2]>,
-        values: Vec<f64>,
-        volumes: Vec<f64>,
-        outline: Vec<Vec<(u32, f64)>>,
-        cell: f64,
-    ) -> Self {
+    /// Whether contact can act on all nodes of a marker.
+    #[must_use]
+    pub fn reaches(&self, marker: u32) -> bool {
+        let weights = &self.markers[marker as usize].weights;
+        weights.iter().all(|&(place, _)| self.contact_rows[place as usize] != OUT_OF_REACH)
+    }
+
+    fn assemble(raw: Raw) -> Self {
+        let Raw { nodes, nodes_per_cell, cells, first_point, gradients, values, volumes, .. } = raw;
+        let Raw { outline, cell, elimination, .. } = raw;
         let mut lumped = vec![0.0; nodes.len()];
         for (index, corners) in cells.chunks_exact(nodes_per_cell).enumerate() {
             for point in first_point[index] as usize..first_point[index + 1] as usize {
@@ -126,6 +168,9 @@ impl Template {
             }
         }
         let mut contact_nodes: Vec<u32> = outline.iter().flatten().map(|&(node, _)| node).collect();
+        if let Elimination::AsNumbered(touched) = &elimination {
+            contact_nodes.extend((0..nodes.len() as u32).filter(|&node| touched[node as usize]));
+        }
         contact_nodes.sort_unstable();
         contact_nodes.dedup();
         let markers = outline
@@ -140,8 +185,14 @@ impl Template {
                     .collect(),
             })
             .collect();
-        let order = order::interior_first(&nodes, &cells, nodes_per_cell, &contact_nodes);
-        let profile = Profile::new(&order, &cells, nodes_per_cell, contact_nodes.len());
+        let (order, contact) = match &elimination {
+            Elimination::InteriorFirst => {
+                let order = order::interior_first(&nodes, &cells, nodes_per_cell, &contact_nodes);
+                (order, contact_nodes.len())
+            }
+            Elimination::AsNumbered(touched) => order::as_numbered(touched),
+        };
+        let profile = Profile::new(&order, &cells, nodes_per_cell, contact);
         let mut entries = Vec::new();
         for corners in cells.chunks_exact(nodes_per_cell) {
             for row in 0..2 * nodes_per_cell {
@@ -152,9 +203,14 @@ impl Template {
             }
         }
         let inner = profile.size() - profile.contact_size();
-        let contact_rows =
-            contact_nodes.iter().map(|&node| (profile.row_of(2 * node as usize) - inner) as u32).collect();
+        let row = |&node: &u32| {
+            let row = profile.row_of(2 * node as usize);
+            row.checked_sub(inner).map_or(OUT_OF_REACH, |row| row as u32)
+        };
+        let contact_rows = contact_nodes.iter().map(row).collect();
         Self {
+            ghost: Vec::new(),
+            grid: Vec::new(),
             lanes: if nodes_per_cell == 4 { lanes(&gradients, &volumes) } else { Vec::new() },
             entries,
             contact_rows,

@@ -1,7 +1,7 @@
 //! Bodies, walls and what happens between them.
 
 use super::body::Body;
-use super::contact::{Key, Wall};
+use super::contact::{ContactKind, Key, Wall};
 use super::element::Law;
 use super::explicit::{DAMPING, Memory};
 use super::observe::network::Impulses;
@@ -59,7 +59,8 @@ pub struct Energies {
     /// Work of the stresses, Σ ½ (fⁿ + fⁿ⁺¹)·Δu: elastic energy and plastic dissipation, and what a hypoelastic law
     /// does not give back.
     pub internal: f64,
-    /// What the implicit step takes for θ > ½: (θ − ½)(Δv·M Δv + Δf·Δu).
+    /// What the implicit step takes for θ > ½: (θ − ½)(Δv·M Δv + Δf·Δu), and what is lost between two grids of an
+    /// updated Lagrangian body.
     pub numerical: f64,
     /// What is lost as contacts close: they do not bounce.
     pub contact: f64,
@@ -87,6 +88,8 @@ pub struct World {
     pub walls: Vec<Wall>,
     /// What the material points obey.
     pub law: Law,
+    /// Between what contact acts.
+    pub contact: ContactKind,
     /// Coulomb coefficient μ of every contact.
     pub friction: f64,
     /// Acceleration of every body [length/time²].
@@ -124,6 +127,7 @@ impl World {
             bodies,
             walls,
             law,
+            contact: ContactKind::default(),
             friction: 0.0,
             acceleration: [0.0; 2],
             damping: DAMPING,

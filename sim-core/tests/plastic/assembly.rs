@@ -75,11 +75,47 @@ fn threads_slices_and_checkpoints_do_not_change_a_bit() {
     }
 }
 
+#[test]
+fn nor_with_splines_and_with_contact_on_a_common_mesh() {
+    for keys in [
+        json!({"variant": "total_cubic"}),
+        json!({"variant": "updated_cubic"}),
+        json!({"variant": "updated_cubic", "contact": "common_mesh"}),
+    ] {
+        let mut scene = json!({"n": 4, "phi_i": 0.55, "mu": 0.3, "strain_end": 0.3});
+        scene.as_object_mut().unwrap().extend(keys.as_object().unwrap().clone());
+        same_bits(&small(&scene));
+    }
+}
+
+#[test]
+fn splines_compact_as_fitted_cells_do_and_a_common_mesh_does_not() {
+    let with = |keys: Value| {
+        let mut scene = json!({"n": 8, "phi_i": 0.7, "cells": 12, "strain_end": 0.2});
+        scene.as_object_mut().unwrap().extend(keys.as_object().unwrap().clone());
+        run(&small(&scene), 2)
+    };
+    let fitted = with(json!({}));
+    let work = |outcome: &Outcome| outcome.states.last().unwrap().real("work").unwrap();
+    for variant in ["total_cubic", "updated_cubic"] {
+        let splines = with(json!({"variant": variant}));
+        let ratio = work(&splines) / work(&fitted);
+        println!("{variant}: {ratio}, {:?}", splines.record);
+        assert!((ratio - 1.0).abs() < 0.05, "{variant}: {ratio}");
+        assert!(splines.record.real("energy_gap").unwrap().abs() < 0.02);
+        assert!(splines.states.last().unwrap().real("overlap").unwrap() < 1e-3);
+    }
+    // pushing at a distance of a cell or two costs much more work at the same strain
+    let mesh = work(&with(json!({"variant": "updated_cubic", "contact": "common_mesh"}))) / work(&fitted);
+    println!("common mesh {mesh}");
+    assert!(mesh > 1.3, "{mesh}");
+}
+
 fn same_bits(scene: &Scene) {
     let whole = run(scene, 1);
     assert_eq!(whole, run(scene, 2));
     let mut begun = compile(&scene.reduce(), &options(2)).unwrap();
-    begun.advance(37).unwrap();
+    assert!(!begun.advance(37).unwrap().finished);
     let bytes = begun.save();
     let mut resumed = restore(&scene.reduce(), &options(1), &bytes).unwrap();
     assert_eq!(resumed.save(), bytes);

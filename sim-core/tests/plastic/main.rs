@@ -10,3 +10,4 @@ mod scenes;
 mod single_disc;
 mod square_cell;
 mod tolerance;
+mod updated;

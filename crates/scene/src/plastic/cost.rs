@@ -1,10 +1,13 @@
 //! Expected steps of `plastic_discs`.
 
-use super::{Method, ReducedPlastic, Setup};
+use super::{Method, ReducedPlastic, Setup, Variant};
 use crate::Cost;
 
 /// Wall time of one material point in one implicit step, Newton iterations and contact included, one core [ns].
 const IMPLICIT_NANOSECONDS: f64 = 6000.0;
+
+/// The same with cubic splines.
+const SPLINE_NANOSECONDS: f64 = 30_000.0;
 
 /// Wall time of one material point in one explicit step, contact included, one core [ns].
 const EXPLICIT_NANOSECONDS: f64 = 90.0;
@@ -80,7 +83,8 @@ impl ReducedPlastic {
 
     pub(crate) fn cost(&self) -> Cost {
         let nanoseconds = match self.method {
-            Method::Implicit => IMPLICIT_NANOSECONDS,
+            Method::Implicit if self.variant == Variant::TotalBilinear => IMPLICIT_NANOSECONDS,
+            Method::Implicit => SPLINE_NANOSECONDS,
             Method::Explicit => EXPLICIT_NANOSECONDS,
         };
         Cost::of(self.expected_steps(), self.points(), nanoseconds, 0.1)

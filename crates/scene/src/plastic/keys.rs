@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::{HardeningMeaning, Material, Plastic, Setup};
+use super::{Contact, HardeningMeaning, Material, Method, Plastic, Setup, Variant};
 use crate::Problem;
 use crate::table::{Absent, Bound, Domain, Key, Word};
 
@@ -36,6 +36,26 @@ const METHODS: &[Word] = &[
     Word {
         name: "explicit",
         meaning: "same bodies, law and contact, explicit steps on lumped masses: fast at 2 m/s",
+    },
+];
+
+const VARIANTS: &[Word] = &[
+    Word {
+        name: "total_bilinear",
+        meaning: "body-fitted bilinear cells in the undeformed configuration: the most accurate for its cost",
+    },
+    Word { name: "total_cubic", meaning: "cubic splines on a regular grid in the undeformed configuration" },
+    Word {
+        name: "updated_cubic",
+        meaning: "cubic splines on a grid that is new at every step, one per particle: the paper's method; `cells` is across the largest diameter",
+    },
+];
+
+const CONTACTS: &[Word] = &[
+    Word { name: "markers", meaning: "markers on the true outlines, by their gap" },
+    Word {
+        name: "common_mesh",
+        meaning: "nodes of a common mesh, by their velocities, as in the paper: acts at a distance of cells",
     },
 ];
 
@@ -191,6 +211,22 @@ pub(super) const KEYS: &[Key] = &[
         source: "choice, see docs/notation.md",
     },
     Key {
+        name: "variant",
+        unit: "-",
+        domain: Domain::Word(VARIANTS),
+        absent: Absent::Default("\"total_bilinear\""),
+        meaning: "how the motion is discretised; splines are implicit only",
+        source: "2021, section 2",
+    },
+    Key {
+        name: "contact",
+        unit: "-",
+        domain: Domain::Word(CONTACTS),
+        absent: Absent::Default("\"markers\""),
+        meaning: "between what contact acts; a common mesh needs grids: variant updated_cubic",
+        source: "2021, section 2",
+    },
+    Key {
         name: "dt",
         unit: "s",
         domain: Domain::Auto(&Domain::Real(Bound::Excluding(0.0), Bound::Including(1e6))),
@@ -251,6 +287,16 @@ pub(super) fn conflicts(scene: &Plastic) -> Vec<Problem> {
     if let Some(cells) = scene.cells.filter(|cells| cells % 2 == 1) {
         let remedy = format!("use {} or {}", cells - 1, cells + 1);
         problems.push(Problem::new("cells", &Value::from(cells), "is not even", remedy));
+    }
+    if scene.method == Method::Explicit && scene.variant != Variant::TotalBilinear {
+        let value = serde_json::to_value(scene.variant).unwrap_or_default();
+        let remedy = "use method implicit, or variant total_bilinear";
+        problems.push(Problem::new("variant", &value, "has no explicit method", remedy));
+    }
+    if scene.contact == Contact::CommonMesh && scene.variant != Variant::UpdatedCubic {
+        let value = serde_json::to_value(scene.contact).unwrap_or_default();
+        let remedy = "use variant updated_cubic, or contact markers";
+        problems.push(Problem::new("contact", &value, "needs bodies on grids with common nodes", remedy));
     }
     if let (Setup::Assembly, Some(phi)) = (scene.setup, scene.phi_end.filter(|phi| *phi <= scene.phi_i)) {
         let remedy = "raise it above phi_i";

@@ -35,6 +35,8 @@ impl Description for Plastic {
             phi_end: self.last_solid_fraction().map(round12),
             strain_end: round12(self.last_strain()),
             method: self.method,
+            variant: self.variant,
+            contact: self.contact,
             dt: self.dt.map(|dt| round12(dt * self.speed_unit() / self.diameter())),
             theta: round12(self.theta),
             cells: self.cells_across(),

@@ -44,13 +44,17 @@ impl Outline {
         0.5 * (0..n).map(cross).sum::<f64>()
     }
 
-    fn near(&self, other: &Self, range: f64) -> bool {
+    /// Whether the bounding boxes are within `range`.
+    #[must_use]
+    pub fn near(&self, other: &Self, range: f64) -> bool {
         (0..2).all(|axis| {
             self.low[axis] - range <= other.high[axis] && other.low[axis] - range <= self.high[axis]
         })
     }
 
-    fn holds(&self, x: [f64; 2], range: f64) -> bool {
+    /// Whether `x` is within `range` of the bounding box.
+    #[must_use]
+    pub fn holds(&self, x: [f64; 2], range: f64) -> bool {
         (0..2).all(|axis| self.low[axis] - range <= x[axis] && x[axis] <= self.high[axis] + range)
     }
 

@@ -1,6 +1,7 @@
 //! Contact rows with their Delassus data: what one unit of impulse does to the contact nodes of the two bodies.
 
-use super::{Candidate, Key, Partner, Wall};
+use super::nodes::node_of;
+use super::{Candidate, ContactKind, Key, Partner, Wall};
 use crate::mpm::body::Body;
 
 /// Most unknowns a row side can touch is 2 × 16 weights; kept as ranges into shared arrays.
@@ -61,6 +62,7 @@ impl Rows {
         bodies: &[Body],
         walls: &[Wall],
         warm: &[(Key, [f64; 2])],
+        kind: ContactKind,
     ) {
         self.rows.clear();
         self.entries.clear();
@@ -69,9 +71,16 @@ impl Rows {
             let key = candidate.key;
             while known.next_if(|(other, _)| *other < key).is_some() {}
             let impulse = known.next_if(|(other, _)| *other == key).map_or([0.0; 2], |(_, impulse)| *impulse);
-            let first = self.side(&bodies[key.body as usize], key.body, &[(key.marker, 1.0)]);
+            let own = &bodies[key.body as usize];
+            let first = match kind {
+                ContactKind::Markers => self.side(own, key.body, &[(key.marker, 1.0)]),
+                ContactKind::CommonMesh => self.node(own, key.body, node_of(own, key.marker), 1.0),
+            };
             let (second, side_count, wall_velocity) = match key.partner {
                 Partner::Wall(number) => (Side::default(), 1, walls[number as usize].velocity),
+                Partner::Body(number) if kind == ContactKind::CommonMesh => {
+                    (self.node(&bodies[number as usize], number, candidate.segment, -1.0), 2, [0.0; 2])
+                }
                 Partner::Body(number) => {
                     let body = &bodies[number as usize];
                     let next = (candidate.segment + 1) % body.template.markers.len() as u32;
@@ -100,6 +109,15 @@ impl Rows {
             }
         }
         Side { body: number, entries: (start, self.entries.len() as u32), response: 0 }
+    }
+
+    /// A side that is a single node.
+    fn node(&mut self, body: &Body, number: u32, node: u32, share: f64) -> Side {
+        let start = self.entries.len() as u32;
+        let template = &body.template;
+        let place = template.contact_nodes.binary_search(&node).expect("a shared node takes part in contact");
+        self.entries.push((template.contact_rows[place], share));
+        Side { body: number, entries: (start, start + 1), response: 0 }
     }
 
     /// Signed weights of a side.

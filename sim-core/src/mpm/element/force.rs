@@ -1,5 +1,6 @@
 //! Internal forces alone.
 
+use super::ghost::add_force;
 use super::{Inverted, LEAST_STEP_JACOBIAN, Law};
 use crate::mpm::body::{Body, Points};
 use crate::mpm::constitutive::{advance, increment};
@@ -21,7 +22,9 @@ pub fn internal_force(
         4 => by_cell::<4>(body, displacement, law, trial, force),
         16 => by_cell::<16>(body, displacement, law, trial, force),
         other => unreachable!("cells have 4 or 16 nodes, not {other}"),
-    }
+    }?;
+    add_force(body, displacement, law, force);
+    Ok(())
 }
 
 fn by_cell<const N: usize>(
@@ -45,6 +48,9 @@ fn by_cell<const N: usize>(
             trial.gradient[p] = f;
             before += template.volumes[p] * body.points.gradient[p].det();
             after += template.volumes[p] * f.det();
+        }
+        if points.is_empty() {
+            continue;
         }
         let mut sum = [[0.0; 2]; N];
         for p in points {
@@ -75,7 +81,7 @@ fn by_cell<const N: usize>(
     Ok(())
 }
 
-/// The internal force of the state of `body`, no point moved: for four-node cells with the bits that
+/// The internal force of the stresses of `body`, no point moved and without the ghost penalty: for four-node cells with the bits that
 /// [`advance_points`](super::advance_points) left behind.
 pub fn force_of_state(body: &Body, force: &mut [f64]) {
     match body.template.nodes_per_cell {

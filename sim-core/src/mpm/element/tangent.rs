@@ -6,7 +6,7 @@
 //! a cell is uniform) and makes the matrix symmetric.
 
 use super::force::gradient;
-use super::{Inverted, LEAST_STEP_JACOBIAN, Law};
+use super::{Inverted, LEAST_STEP_JACOBIAN, Law, ghost};
 use crate::mpm::body::{Body, Points};
 use crate::mpm::constitutive::{advance, increment};
 use crate::mpm::plane::{Mat2, Stress};
@@ -30,7 +30,10 @@ pub fn internal_force_and_tangent(
         4 => by_cell::<4, 8>(body, displacement, law, trial, force, factor, matrix),
         16 => by_cell::<16, 32>(body, displacement, law, trial, force, factor, matrix),
         other => unreachable!("cells have 4 or 16 nodes, not {other}"),
-    }
+    }?;
+    ghost::add_force(body, displacement, law, force);
+    ghost::add_tangent(body, law, factor, matrix);
+    Ok(())
 }
 
 /// A fourth-order tensor of the plane, rows and columns (xx, xy, yx, yy).
@@ -60,6 +63,9 @@ fn by_cell<const N: usize, const M: usize>(
             trial.gradient[p] = f;
             before += template.volumes[p] * body.points.gradient[p].det();
             after += template.volumes[p] * f.det();
+        }
+        if points.is_empty() {
+            continue;
         }
         let mut sum = [0.0; M];
         // ⟨tr δL⟩ = mean · δu, and the coupling vectors of the barred gradient

@@ -8,7 +8,7 @@ use crate::mpm::body::Body;
 use crate::mpm::constitutive::Hardening;
 use crate::mpm::contact::rows::tangent;
 use crate::mpm::contact::{Partner, Wall};
-use crate::mpm::element::force_of_state;
+use crate::mpm::element::{add_ghost_force, force_of_state};
 use crate::mpm::world::{Energies, World};
 
 impl Implicit {
@@ -27,6 +27,7 @@ impl Implicit {
             gather_contact(body, &work.free, contact);
             std::mem::swap(&mut body.points, &mut work.trial);
             force_of_state(body, &mut work.force);
+            add_ghost_force(body, &work.displacement, law, &mut work.force);
             work_of_the_step(work, body, *acceleration, theta, energies);
             std::mem::swap(&mut work.force, &mut work.start_force);
             body.displacement.copy_from_slice(&work.displacement);

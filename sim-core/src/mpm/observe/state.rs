@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 
 use super::curvature;
 use super::network::{Contact, Coordination, Impulses, contacts, coordination};
-use crate::mpm::contact::Partner;
 use crate::mpm::contact::detect::Outline;
+use crate::mpm::contact::{ContactKind, Partner};
 use crate::mpm::setup::{BOTTOM, LEFT, TOP};
 use crate::mpm::world::World;
 
@@ -163,7 +163,7 @@ impl View<'_> {
         let (mut flowed, mut flowed_wide, mut yielding, mut mean_stress) = (0.0, 0.0, 0.0, 0.0);
         let hardening = world.law.material.plasticity;
         for (body, outline) in world.bodies.iter().zip(&outlines) {
-            undeformed += body.template.volumes.iter().sum::<f64>() * body.size * body.size;
+            undeformed += body.area;
             outlined += outline.area();
             for (p, volume) in body.volumes().enumerate() {
                 let (plastic, stress) = (body.points.plastic[p], body.points.stress[p]);
@@ -234,6 +234,10 @@ impl View<'_> {
     /// Width of the contact zones on the bottom wall: for each body from its first to its last marker that bears
     /// impulse, half a spacing more on either side. (Markers in between may be relieved by their neighbours.)
     fn contact_width(&self, outlines: &[Outline]) -> f64 {
+        if self.world.contact == ContactKind::CommonMesh {
+            // impulses act on nodes, not on markers: there is no zone of the outline to measure
+            return 0.0;
+        }
         let on = Partner::Wall(BOTTOM as u32);
         let mut zones: Vec<(u32, [f64; 2])> = Vec::new();
         for (key, _) in self.world.impulses.iter().filter(|(key, _)| key.partner == on) {
@@ -252,18 +256,28 @@ impl View<'_> {
     fn centre_stress(&self) -> f64 {
         let body = &self.world.bodies[0];
         let template = &body.template;
-        let distance = |p: usize| {
-            let cell = p / 4;
-            let mut x = [0.0; 2];
-            for (a, &node) in template.cells[4 * cell..4 * cell + 4].iter().enumerate() {
-                let at = template.nodes[node as usize];
-                x[0] += template.values[4 * p + a] * at[0];
-                x[1] += template.values[4 * p + a] * at[1];
+        let n = template.nodes_per_cell;
+        // the four points that began nearest to the centre of the first body, or are nearest to its centre of mass
+        let centre = body.cloud.as_ref().map_or([0.0; 2], |cloud| {
+            let mass: f64 = cloud.mass.iter().sum();
+            let along = |axis: usize| -> f64 {
+                cloud.position.iter().zip(&cloud.mass).map(|(x, m)| m * x[axis]).sum::<f64>() / mass
+            };
+            [0, 1].map(|axis| (along(axis) - body.origin[axis]) / body.size)
+        });
+        let mut nearest: Vec<(f64, usize)> = Vec::with_capacity(template.point_count());
+        for (cell, nodes) in template.cells.chunks_exact(n).enumerate() {
+            for p in template.first_point[cell] as usize..template.first_point[cell + 1] as usize {
+                let mut x = [0.0; 2];
+                for (a, &node) in nodes.iter().enumerate() {
+                    let at = template.nodes[node as usize];
+                    x[0] += template.values[n * p + a] * at[0];
+                    x[1] += template.values[n * p + a] * at[1];
+                }
+                let (dx, dy) = (x[0] - centre[0], x[1] - centre[1]);
+                nearest.push((dx * dx + dy * dy, p));
             }
-            x[0] * x[0] + x[1] * x[1]
-        };
-        // the four points round the centre
-        let mut nearest: Vec<(f64, usize)> = (0..template.point_count()).map(|p| (distance(p), p)).collect();
+        }
         nearest.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         -nearest[..4].iter().map(|&(_, p)| body.points.stress[p].yy).sum::<f64>() / 4.0
     }

@@ -9,9 +9,10 @@ use crate::mpm::contact::{Key, Wall};
 use crate::mpm::explicit::Memory;
 use crate::mpm::observe::network::Impulses;
 use crate::mpm::plane::{Mat2, Stress};
+use crate::mpm::updated::{self, Cloud};
 use crate::mpm::world::{Effort, Energies, World};
 
-const MAGIC: &[u8; 8] = b"TAMPMPM2";
+const MAGIC: &[u8; 8] = b"TAMPMPM3";
 const DIGEST: usize = 32;
 
 #[derive(Serialize, Deserialize)]
@@ -21,6 +22,7 @@ struct BodyState {
     gradient: Vec<[f64; 4]>,
     stress: Vec<Stress>,
     plastic: Vec<f64>,
+    cloud: Option<Cloud>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -56,6 +58,7 @@ pub(super) fn save(run: &PlasticDiscs) -> Vec<u8> {
                 gradient: body.points.gradient.iter().map(|f| [f.xx, f.xy, f.yx, f.yy]).collect(),
                 stress: body.points.stress.clone(),
                 plastic: body.points.plastic.clone(),
+                cloud: body.cloud.as_deref().cloned(),
             })
             .collect(),
         walls: world.walls.clone(),
@@ -99,11 +102,17 @@ pub(super) fn load(run: &mut PlasticDiscs, bytes: &[u8]) -> Result<(), SimError>
         return refuse("has other bodies than the scene");
     }
     for (body, state) in world.bodies.iter_mut().zip(saved.bodies) {
-        if state.displacement.len() != body.displacement.len()
-            || state.plastic.len() != body.points.plastic.len()
-        {
+        let fits = match (&state.cloud, &body.cloud) {
+            (None, None) => state.displacement.len() == body.displacement.len(),
+            (Some(saved), Some(own)) => {
+                saved.position.len() == own.position.len() && saved.markers.len() == own.markers.len()
+            }
+            _ => false,
+        };
+        if !fits || state.plastic.len() != body.points.plastic.len() {
             return refuse("has another mesh than the scene");
         }
+        body.cloud = state.cloud.map(Box::new);
         body.displacement = state.displacement;
         body.velocity = state.velocity;
         body.points.gradient =
@@ -112,6 +121,8 @@ pub(super) fn load(run: &mut PlasticDiscs, bytes: &[u8]) -> Result<(), SimError>
         body.points.plastic = state.plastic;
     }
     world.walls = saved.walls;
+    // nodal values of bodies whose grid lasts for one step follow from their points
+    updated::regrid(world);
     world.impulses = saved.impulses;
     world.last_dt = saved.last_dt;
     world.wall_impulse = saved.wall_impulse;

@@ -1,6 +1,7 @@
 //! Body-fitted cells of a disc: a square core inside rings (O-grid).
 
-use super::{Parts, Template};
+use super::{Parts, Reach, Scatter, Template, cell_order, spline};
+use crate::mpm::spline as functions;
 
 /// A unit disc with `across` cells along a diameter (even, at least 2): a core of 2a × 2a cells inside r rings with
 /// 2(a + r) = `across`, a ≈ 0.4 `across`. Markers lie on the nodes and on the middles of the outer edges, interpolated
@@ -18,6 +19,38 @@ pub fn disc(across: usize) -> Template {
 #[must_use]
 pub fn symmetric_disc(across: usize) -> Template {
     turned(across, 0.0)
+}
+
+/// A unit disc on a regular grid of cubic splines, `across` cells along a diameter (even), a node in the centre;
+/// cells that the outline cuts have points for what lies inside.
+#[must_use]
+pub fn cubic_disc(across: usize) -> Template {
+    gridded(across, 0.25)
+}
+
+/// The same with markers that are symmetric about both axes.
+#[must_use]
+pub fn symmetric_cubic_disc(across: usize) -> Template {
+    gridded(across, 0.0)
+}
+
+fn gridded(across: usize, turn: f64) -> Template {
+    assert!(across >= 2 && across.is_multiple_of(2), "cells across the diameter: even, at least 2");
+    let spacing = 2.0 / across as f64;
+    let functions::Fill { positions, volumes } = functions::disc([0.0; 2], 1.0, spacing);
+    let order = cell_order(&positions, spacing);
+    let points: Vec<[f64; 2]> = order.iter().map(|&p| positions[p]).collect();
+    let volumes: Vec<f64> = order.iter().map(|&p| volumes[p]).collect();
+    let markers = functions::circle([0.0; 2], 1.0, spacing, turn);
+    let scatter = Scatter {
+        spacing,
+        origin: [0.0; 2],
+        size: 1.0,
+        points: &points,
+        volumes: &volumes,
+        markers: &markers,
+    };
+    spline(&scatter, &Reach::All)
 }
 
 /// `turn` in edges of the outline.

@@ -33,3 +33,10 @@ pub(super) fn interior_first(
     });
     order
 }
+
+/// Nodes by number, those that contact acts on last, and how many these are.
+pub(super) fn as_numbered(touched: &[bool]) -> (Vec<u32>, usize) {
+    let nodes = |last: bool| (0..touched.len() as u32).filter(move |&node| touched[node as usize] == last);
+    let order: Vec<u32> = nodes(false).chain(nodes(true)).collect();
+    (order, touched.iter().filter(|last| **last).count())
+}

@@ -1,0 +1,140 @@
+//! Four material points per cell, with the volume that their quarter of the cell has inside the body.
+
+/// Material points of an undeformed body.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Fill {
+    /// Positions.
+    pub positions: Vec<[f64; 2]>,
+    /// Volumes (areas per unit thickness).
+    pub volumes: Vec<f64>,
+}
+
+/// Strips across a quarter cell that is cut by the outline.
+const STRIPS: usize = 32;
+
+/// Least share of a quarter cell that makes a point; what smaller slivers hold is spread over all points.
+const SLIVER: f64 = 0.02;
+
+/// A disc: in every quarter of a cell one point, at the centroid of what lies inside and with its area. With equal
+/// volumes instead, the outline is a staircase of quarter cells, which costs up to 10 % of force at small strain.
+/// Volumes are scaled to the exact area π R².
+#[must_use]
+pub fn disc(centre: [f64; 2], radius: f64, spacing: f64) -> Fill {
+    let half = 0.5 * spacing;
+    let range = |axis: usize| {
+        let low = ((centre[axis] - radius) / half).floor();
+        let high = ((centre[axis] + radius) / half).ceil();
+        #[expect(clippy::cast_possible_truncation, reason = "a body is far smaller than 2³¹ cells")]
+        (low as i32, high as i32)
+    };
+    let mut fill = Fill::default();
+    for j in range(1).0..range(1).1 {
+        for i in range(0).0..range(0).1 {
+            let low = [half * f64::from(i) - centre[0], half * f64::from(j) - centre[1]];
+            let (area, at) = inside(low, half, radius);
+            if area > SLIVER * half * half {
+                fill.positions.push([centre[0] + at[0], centre[1] + at[1]]);
+                fill.volumes.push(area);
+            }
+        }
+    }
+    let scale = std::f64::consts::PI * radius * radius / fill.volumes.iter().sum::<f64>();
+    fill.volumes.iter_mut().for_each(|volume| *volume *= scale);
+    fill
+}
+
+/// Area and centroid of the part of a square inside a circle round the origin.
+fn inside(low: [f64; 2], side: f64, radius: f64) -> (f64, [f64; 2]) {
+    let corner = |i: usize, j: usize| libm::hypot(low[0] + i as f64 * side, low[1] + j as f64 * side);
+    if [(0, 0), (0, 1), (1, 0), (1, 1)].into_iter().all(|(i, j)| corner(i, j) <= radius) {
+        return (side * side, [low[0] + 0.5 * side, low[1] + 0.5 * side]);
+    }
+    let (mut area, mut moment) = (0.0, [0.0; 2]);
+    let width = side / STRIPS as f64;
+    for k in 0..STRIPS {
+        let x = low[0] + (k as f64 + 0.5) * width;
+        let reach = (radius * radius - x * x).max(0.0).sqrt();
+        let (from, to) = (low[1].max(-reach), (low[1] + side).min(reach));
+        if to > from {
+            let strip = width * (to - from);
+            area += strip;
+            moment[0] += strip * x;
+            moment[1] += strip * 0.5 * (from + to);
+        }
+    }
+    if area > 0.0 { (area, moment.map(|one| one / area)) } else { (0.0, [0.0; 2]) }
+}
+
+/// A rectangle of whole cells, its corners on nodes.
+#[must_use]
+pub fn block(low: [i32; 2], cells: [i32; 2], spacing: f64) -> Fill {
+    let mut fill = Fill::default();
+    for j in 0..2 * cells[1] {
+        for i in 0..2 * cells[0] {
+            let at = [f64::from(low[0]) + 0.25, f64::from(low[1]) + 0.25];
+            fill.positions
+                .push([spacing * (at[0] + 0.5 * f64::from(i)), spacing * (at[1] + 0.5 * f64::from(j))]);
+            fill.volumes.push(0.25 * spacing * spacing);
+        }
+    }
+    fill
+}
+
+/// Outline markers of a disc, counter-clockwise, about half a cell apart and a multiple of four; `turn` in spacings.
+#[must_use]
+pub fn circle(centre: [f64; 2], radius: f64, spacing: f64, turn: f64) -> Vec<[f64; 2]> {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive and small")]
+    let count = 4 * (std::f64::consts::PI * radius / spacing).ceil() as usize;
+    let at = |k: usize| {
+        let (sin, cos) = libm::sincos(std::f64::consts::TAU * (k as f64 + turn) / count as f64);
+        [centre[0] + radius * cos, centre[1] + radius * sin]
+    };
+    (0..count).map(at).collect()
+}
+
+/// Outline markers of a rectangle of whole cells, two per cell.
+#[must_use]
+pub fn rim(low: [i32; 2], cells: [i32; 2], spacing: f64) -> Vec<[f64; 2]> {
+    let (w, h) = (2 * cells[0], 2 * cells[1]);
+    let way = (0..w).map(|i| (i, 0)).chain((0..h).map(|j| (w, j)));
+    let back = (0..w).map(|i| (w - i, h)).chain((0..h).map(|j| (0, h - j)));
+    way.chain(back)
+        .map(|(i, j)| {
+            [
+                spacing * (f64::from(low[0]) + 0.5 * f64::from(i)),
+                spacing * (f64::from(low[1]) + 0.5 * f64::from(j)),
+            ]
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cut_quarter_has_the_area_and_the_centroid_inside() {
+        // a quarter circle of radius 1 in its square: π/4 and 4/(3π)
+        let (area, at) = inside([0.0, 0.0], 1.0, 1.0);
+        assert!((area / std::f64::consts::FRAC_PI_4 - 1.0).abs() < 1e-3, "{area}");
+        let exact = 4.0 / (3.0 * std::f64::consts::PI);
+        assert!((at[0] / exact - 1.0).abs() < 1e-3 && (at[1] / exact - 1.0).abs() < 1e-3, "{at:?}");
+        assert_eq!(inside([0.8, 0.8], 1.0, 1.0).0, 0.0);
+    }
+
+    #[test]
+    fn a_disc_has_its_moments_wherever_it_lies_on_the_grid() {
+        for centre in [[0.0, 0.0], [0.03, -0.41]] {
+            let fill = disc(centre, 0.5, 1.0 / 12.0);
+            let sum = |of: &dyn Fn([f64; 2]) -> f64| -> f64 {
+                fill.positions.iter().zip(&fill.volumes).map(|(&x, v)| v * of(x)).sum()
+            };
+            let area = std::f64::consts::FRAC_PI_4;
+            assert!((sum(&|_| 1.0) - area).abs() < 1e-12);
+            assert!((0..2).all(|axis| sum(&|x| x[axis] - centre[axis]).abs() < 1e-5));
+            // ∫ x² = π R⁴/4, to the second moment of a quarter cell
+            let second = sum(&|x| (x[0] - centre[0]) * (x[0] - centre[0]));
+            assert!((second / (area / 16.0) - 1.0).abs() < 0.02, "{second}");
+        }
+    }
+}
