@@ -97,7 +97,6 @@ fn squeezed(case: &str, hardening: &str, cells: i32) -> (f64, f64) {
         worst = (worst.0.max((force / row.y - 1.0).abs()), worst.1.max(spread));
     });
     assert!(compared >= 2, "{case}, H = {hardening}: {compared} rows");
-    println!("{case} {hardening} {cells}: force {:.4}, stress {:.4}", worst.0, worst.1);
     worst
 }
 
@@ -106,8 +105,14 @@ fn a_block_between_walls_converges_to_the_rate_equations() {
     for case in ["block_free_sides", "block_confined"] {
         for hardening in ["el", "1"] {
             let (coarse, fine) = (squeezed(case, hardening, 4), squeezed(case, hardening, 8));
-            // a free edge cuts cells anywhere: what is wrong there is a strip of a cell, first order
-            assert!(fine.0 < 0.02, "{case}, H = {hardening}: force {coarse:?}, {fine:?}");
+            // points integrate functions that the edge cuts by the midpoint rule: the nodal forces of a uniform stress do
+            // not quite balance the load on the edge, a strip of a cell is off by a fixed share, first order in h
+            // (measured: 6.6 and 4.0 % at most)
+            assert!(
+                fine.0 < 0.045 && coarse.0 / fine.0 > 1.5,
+                "{case}, H = {hardening}: {coarse:?}, {fine:?}"
+            );
+            assert!(fine.1 < coarse.1, "{case}, H = {hardening}: {coarse:?}, {fine:?}");
         }
     }
 }
@@ -152,7 +157,6 @@ fn quarter_turn(steps: usize) -> (f64, f64) {
 #[test]
 fn a_spinning_disc_keeps_its_angular_momentum_to_first_order_in_time() {
     let (coarse, fine) = (quarter_turn(50), quarter_turn(100));
-    println!("loss {} {}, stress {} {}", coarse.0, fine.0, coarse.1, fine.1);
     // backward Euler turns mv about x, not x + Δx: an amount of ω²Δt² of L a step, which is first order over a time
     let order = (coarse.0 / fine.0).log2();
     assert!((order - 1.0).abs() < 0.1, "order {order}: {} and {}", coarse.0, fine.0);

@@ -8,7 +8,7 @@ use super::Law;
 use crate::mpm::body::Body;
 use crate::mpm::skyline::Skyline;
 
-/// γ. Without it a quasi-static disc does not converge at all; its energy stays below 10⁻³ of the elastic one.
+/// γ. Without it a quasi-static disc on a grid of splines does not converge at all.
 const PENALTY: f64 = 1e-3;
 
 const BEND: [f64; 3] = [1.0, -2.0, 1.0];
