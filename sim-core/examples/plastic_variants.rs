@@ -145,12 +145,12 @@ fn reference(quantity: &str, hardening: &str) -> Vec<(f64, f64)> {
     rows.collect()
 }
 
-/// Two elastic discs of 12 cells approach slowly, at different places of the grid; and one disc a wall.
+/// Two elastic discs approach slowly, at different places of the grid; and one disc a wall.
 fn gaps(path: &str) {
     let head = "contact,cells,offset[cell],gap_disc_disc[cell],gap_disc_disc[d],gap_disc_wall[cell]";
     for (name, kind) in [("markers", ContactKind::Markers), ("common_mesh", ContactKind::CommonMesh)] {
         for cells in [8_u32, 16] {
-            for offset in [0.0, 0.25, 0.5, 0.75] {
+            for offset in [0.0, 0.125, 0.25, 0.375] {
                 append(path, head, &format!("{name},{cells},{offset},"), || {
                     let h = 1.0 / f64::from(cells);
                     let [disc, wall] = [true, false].map(|pair| approach(kind, h, offset, pair));
@@ -175,7 +175,7 @@ fn approach(kind: ContactKind, h: f64, offset: f64, pair: bool) -> f64 {
         body
     };
     let start = 4.5 * h;
-    let first = disc(0.5 * h * offset, speed);
+    let first = disc(h * offset, speed);
     let edge = first.origin[0] + 0.5 + start;
     let mut world = if pair {
         World::new(vec![first, disc(edge + 0.5, 0.0)], Vec::new(), law)
