@@ -203,22 +203,17 @@ fn course(mut world: World, hardening: &str) -> (f64, f64, World) {
 
 #[test]
 fn both_spline_variants_follow_the_finite_element_reference() {
-    let h = D / 12.0;
-    for hardening in ["el", "1"] {
-        let total = Body::new(Arc::new(cubic_disc(12)), D / 2.0, [0.0, D / 2.0], &law(hardening).material);
-        let updated = disc([0.0, D / 2.0], D / 2.0, h, hardening);
-        for (name, body) in [("total", total), ("updated", updated)] {
-            let (force, work, world) = course(press(body, hardening, 0.5), hardening);
-            let e = world.energies;
-            let open = e.work - world.kinetic_energy() - e.internal - e.numerical - e.contact - e.friction;
-            let (open, lost) = (open / e.work, e.numerical / e.work);
-            println!(
-                "{name} {hardening}: force {force:.4}, work {work:.4}, open {open:.1e}, lost {lost:.1e}"
-            );
-            // 1 % (total) and 2 to 3.5 % (updated), as contact zones grow marker by marker; work within 0.5 %
-            assert!(force < 0.04 && work.abs() < 0.02, "{name}, H = {hardening}: force {force}, work {work}");
-            // backward Euler takes 0.8 % here, the transfer between grids half as much again
-            assert!(open.abs() < 1e-3 && lost.abs() < 0.02, "{name}, H = {hardening}: {e:?}");
-        }
+    let (h, hardening) = (D / 12.0, "1");
+    let total = Body::new(Arc::new(cubic_disc(12)), D / 2.0, [0.0, D / 2.0], &law(hardening).material);
+    let updated = disc([0.0, D / 2.0], D / 2.0, h, hardening);
+    for (name, body) in [("total", total), ("updated", updated)] {
+        let (force, work, world) = course(press(body, hardening, 0.5), hardening);
+        let e = world.energies;
+        let open = e.work - world.kinetic_energy() - e.internal - e.numerical - e.contact - e.friction;
+        let (open, lost) = (open / e.work, e.numerical / e.work);
+        // 1.7 % (total) and 3.3 % (updated) as contact zones grow marker by marker; work within 0.5 %
+        assert!(force < 0.04 && work.abs() < 0.01, "{name}: force {force}, work {work}");
+        // backward Euler takes 0.6 % here, the transfer between grids another 0.9 %
+        assert!(open.abs() < 1e-3 && lost.abs() < 0.02, "{name}: {e:?}");
     }
 }
