@@ -90,7 +90,7 @@ fn nor_with_splines_and_with_contact_on_a_common_mesh() {
 
 #[test]
 #[ignore = "half a minute; cargo test --release -p sim-core --test plastic -- --ignored splines"]
-fn splines_compact_as_fitted_cells_do_and_a_common_mesh_does_not() {
+fn splines_compact_as_fitted_cells_do() {
     let with = |keys: Value| {
         let mut scene = json!({"n": 6, "phi_i": 0.6, "cells": 8, "strain_end": 0.3});
         scene.as_object_mut().unwrap().extend(keys.as_object().unwrap().clone());
@@ -106,9 +106,6 @@ fn splines_compact_as_fitted_cells_do_and_a_common_mesh_does_not() {
         assert!(splines.record.real("energy_gap").unwrap().abs() < 0.04);
         assert!(splines.states.last().unwrap().real("overlap").unwrap() < 1e-3);
     }
-    // pushing at a distance of a cell or two costs much more work at the same strain
-    let mesh = work(&with(json!({"variant": "updated_cubic", "contact": "common_mesh"}))) / work(&fitted);
-    assert!(mesh > 1.2, "{mesh}");
 }
 
 fn same_bits(scene: &Scene) {
