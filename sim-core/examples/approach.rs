@@ -4,8 +4,8 @@
 //!
 //! Runs every point of a sweep by its own stop rule and appends to `OUT.csv` the record on the way, whenever the number
 //! of steps has grown by the given factor, and at the end (`mark` = `way`, `end`, or `cut` where a point has used its CPU
-//! time, `failed` with the reason); to `OUT.series.csv` the samples of the last nine tenths of its time, from which what
-//! any stop rule would have done can be read off. A point that has its last row is skipped, so the command can be
+//! time, `failed` with the reason); to `OUT.series.csv` its samples, from which what any stop rule would have done
+//! can be read off. A point that has its last row is skipped, so the command can be
 //! repeated. `cpu_s` counts the steps alone, on all threads of the process; what is looked at beside them is left out.
 #![expect(clippy::print_stdout, reason = "an example for the command line")]
 
@@ -95,7 +95,7 @@ impl Sheet {
     }
 }
 
-/// Seven significant digits are more than any of these is known to.
+/// Seven significant digits: more than any of these is known to.
 fn number(value: f64) -> String {
     if value == value.trunc() && value.abs() < 1e15 {
         format!("{value}")
@@ -168,7 +168,7 @@ fn run(
     }
 }
 
-/// The samples of the last nine tenths of the time.
+/// The samples of a run from the hundredth of its time on.
 fn write_series(sheet: &mut Sheet, label: &str, series: &Table) {
     let column = |name: &str| series.column(name).expect("in every series");
     let names = [
@@ -191,10 +191,10 @@ fn write_series(sheet: &mut Sheet, label: &str, series: &Table) {
         .collect();
     let last = columns[1].last().copied().unwrap_or(0.0);
     for k in 0..series.rows() {
-        if columns[1][k] >= 0.1 * last {
+        if columns[1][k] >= 0.01 * last {
             let mut cells = vec![label.to_owned()];
             cells.extend(columns.iter().map(|values| number(values[k])));
-            cells.extend(walls.iter().map(|(force, load)| number(force[k] / load[k])));
+            cells.extend(walls.iter().map(|(force, load)| format!("{:.5}", force[k] / load[k])));
             sheet.line(&cells);
         }
     }
@@ -227,7 +227,14 @@ fn main() {
             cells.next().filter(|mark| *mark != "way").map(|_| label)
         })
         .collect();
-    let mut rows = Sheet::open(&path, &format!("scene,mark,cpu_s,{},{}", KEYS.join(","), COLUMNS.join(",")));
+    let mut rows = Sheet::open(
+        &path,
+        &format!(
+            "scene,mark,cpu_s,{},{}",
+            KEYS.map(|name| if name == "dt" { "given_dt" } else { name }).join(","),
+            COLUMNS.join(",")
+        ),
+    );
     let mut samples = Sheet::open(
         &PathBuf::from(format!("{out}.series.csv")),
         "scene,step,t,e,z,z_plus,z_minus,two_contact_particles,ke,ke_held,eel,unbalanced_force,wall_1,wall_2,wall_3,wall_4,wall_5,wall_6",

@@ -63,9 +63,10 @@ impl Model {
     #[must_use]
     pub fn physics_version(self) -> u32 {
         match self {
-            // 2: tangential force in the plane as one number; exact sum of the stress.
-            Self::CohesiveDiscs => 2,
-            Self::CohesiveSpheres | Self::PlasticDiscs => 1,
+            // 2, spheres: the time step follows the network alone, and may be larger than 0.1 τ.
+            // 2, discs: tangential force in the plane as one number; exact sum of the stress.
+            Self::CohesiveSpheres | Self::CohesiveDiscs => 2,
+            Self::PlasticDiscs => 1,
         }
     }
 

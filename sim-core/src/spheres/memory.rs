@@ -106,3 +106,23 @@ pub(crate) struct Memory {
     /// State when the kicks ended.
     pub(crate) kicks_ended: Option<Mark>,
 }
+
+impl Memory {
+    /// The time step was divided by `factor` at `step`: what was to be run in the rest of the time takes more steps.
+    /// A step limit that the scene gives stays.
+    #[expect(
+        clippy::cast_precision_loss,
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "steps stay far below 2^53"
+    )]
+    pub(crate) fn stretch(&mut self, step: u64, factor: f64, limited: bool) {
+        let stretched = |limit: u64| step + (limit.saturating_sub(step) as f64 * factor).ceil() as u64;
+        self.expected_steps = stretched(self.expected_steps);
+        if limited {
+            self.expected_steps = self.expected_steps.min(self.step_limit);
+        } else {
+            self.step_limit = stretched(self.step_limit);
+        }
+    }
+}

@@ -15,10 +15,16 @@ use crate::{Options, Progress, SimError, Simulation};
 
 /// Version of the checkpoint of a run.
 const CHECKPOINT_VERSION: u32 = 1;
-/// Steps between looks where the scene gives a time step beyond twice the largest automatic one.
+/// Steps between looks where the scene gives a daring time step.
 const DARING_EVERY: u64 = 10;
+/// Given time step beyond which a run is looked at that often [τ]. Jammed networks have critical steps of 0.2 to 0.3 τ,
+/// so such a step has no room for a network that grows between two samples.
+const DARING_DT: f64 = 0.2;
 /// Growth of Z after which the stability bound of the time step is asked for again [1].
-const NETWORK_GROWTH: f64 = 1.0;
+const NETWORK_GROWTH: f64 = 0.5;
+
+/// What limits the time step when it is no wall.
+const NETWORK: &str = "the network";
 
 /// A running scene of cohesive spheres.
 pub(crate) struct Run {
@@ -113,10 +119,9 @@ impl Run {
         next
     }
 
-    /// Whether the scene gives a step beyond twice the largest automatic one. Jammed networks have critical steps of 0.2
-    /// to 0.3 τ, so that has no room for a network that grows between two samples, and is looked at often.
+    /// Whether the scene gives a step beyond [`DARING_DT`].
     fn daring(&self) -> bool {
-        self.scene.dt.is_some_and(|dt| dt > 2.0 * start::LARGEST_DT)
+        self.scene.dt.is_some_and(|dt| dt > DARING_DT)
     }
 
     /// Everything that is due at the present step.
@@ -125,7 +130,7 @@ impl Run {
         let view = self.dynamics.view();
         self.look(&view)?;
         if self.daring() {
-            self.adapt_dt();
+            self.adapt_dt(self.dynamics.critical_dt(), NETWORK);
         }
         if step == self.memory.next_sample || step == self.memory.step_limit {
             self.sample(&view);
@@ -151,8 +156,9 @@ impl Run {
         // the bound costs some forty steps, so it is asked for only when the network has grown
         if sample.z >= self.memory.dt_bound_z + NETWORK_GROWTH {
             self.memory.dt_bound_z = sample.z;
-            self.adapt_dt();
+            self.adapt_dt(self.dynamics.critical_dt(), NETWORK);
         }
+        self.adapt_dt(start::walls_limit(&self.scene, view), "a wall on its contacts");
         self.memory.samples.push(sample);
         self.memory.next_sample = self.memory.plan.after(step);
         let found = self.evidence();
@@ -174,16 +180,16 @@ impl Run {
     /// Lowers the time step when the network has become stiffer; never raises it. A step that the scene gives is
     /// kept up to the critical one: beyond it friction turns the unstable modes into noise that no look at the energy
     /// finds, and the packing comes out far too dense.
-    fn adapt_dt(&mut self) {
-        let critical = self.dynamics.critical_dt();
-        if self.scene.dt.is_some() && self.dynamics.dt() <= critical {
+    fn adapt_dt(&mut self, critical: f64, of: &str) {
+        let before = self.dynamics.dt();
+        if self.scene.dt.is_some() && before <= critical {
             return;
         }
         let safe = start::safe_dt(self.memory.dt_cap, critical);
-        if safe < self.dynamics.dt() {
+        if safe < before {
             self.dynamics.set_dt(safe);
-            self.memory.dt_reason =
-                format!("stiffest mode of the network: critical time step {critical:.4} τ");
+            self.memory.dt_reason = format!("stiffest mode of {of}: critical time step {critical:.4} τ");
+            self.memory.stretch(self.dynamics.steps(), before / safe, self.scene.max_steps.is_some());
         }
     }
 

@@ -9,8 +9,8 @@ const NANOSECONDS: f64 = 35.0;
 /// Packing and observables of one sphere [s].
 const OVERHEAD_PER_SPHERE: f64 = 2e-6;
 
-/// Time step assumed before the contact network is known [τ]; the bound for a sphere with many contacts.
-const STEP: f64 = 0.078;
+/// Time step assumed before the contact network is known [τ].
+const STEP: f64 = 0.13;
 
 impl ReducedSpheres {
     /// Time until e is within 1e-3 of its final value [τ]: 0.452 (σe/p)^0.7, a fit to measured runs at N = 2207

@@ -1,0 +1,387 @@
+"""Tables (tables.md) and pictures of the error study, from the CSV files beside it. Needs numpy and matplotlib.
+
+The system is chaotic, so an error is the mean over seeds of a difference, with its standard error; beside it stands the
+scatter of single runs (standard deviation between seeds). Differences are taken seed by seed where runs share the
+initial state. Cost is particle-steps times NANOSECONDS, on one core.
+"""
+import csv
+import gzip
+import math
+import pathlib
+from collections import defaultdict
+
+import matplotlib
+
+matplotlib.use("svg")
+import matplotlib.pyplot as plt
+import numpy as np
+
+HERE = pathlib.Path(__file__).parent
+NANOSECONDS = 28.0  # per particle-step, docs/performance.md
+plt.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": "tamp", "font.size": 9, "axes.spines.top": False,
+                     "axes.spines.right": False, "legend.frameon": False})
+SHOWN = [("e", "e"), ("z_plus", "Z+"), ("z_minus", "Z−"), ("beta_plus", "β+"), ("beta_minus", "β−")]
+OUT = []
+
+
+def number(text):
+    try:
+        return float(text)
+    except ValueError:
+        return text
+
+
+def read(name):
+    path = HERE / name
+    opened = gzip.open(path.with_name(name + ".gz"), "rt") if not path.exists() else open(path)
+    with opened as file:
+        return [{k: number(v) for k, v in row.items()} for row in csv.DictReader(file)]
+
+
+def say(*lines):
+    OUT.extend(lines)
+
+
+def table(head, rows):
+    say("", "| " + " | ".join(head) + " |", "|" + "---|" * len(head))
+    for row in rows:
+        say("| " + " | ".join(row) + " |")
+    say("")
+
+
+def mean(values):
+    values = [v for v in values if isinstance(v, float)]
+    if len(values) < 2:
+        return (values[0] if values else math.nan), math.nan, len(values)
+    return float(np.mean(values)), float(np.std(values, ddof=1) / math.sqrt(len(values))), len(values)
+
+
+def scatter(values):
+    values = [v for v in values if isinstance(v, float)]
+    return float(np.std(values, ddof=1)) if len(values) > 1 else math.nan
+
+
+def pm(values, digits=4):
+    m, s, _ = mean(values)
+    return f"{m:+.{digits}f} ± {s:.{digits}f}" if not math.isnan(m) else "–"
+
+
+def difference(row, reference, name):
+    a, b = row.get(name), reference.get(name)
+    return a - b if isinstance(a, float) and isinstance(b, float) else None
+
+
+def mega(value):
+    return f"{value / 1e6:g}"
+
+
+def save(figure, name):
+    figure.tight_layout()
+    figure.savefig(HERE / name, metadata={"Date": None})
+    plt.close(figure)
+
+
+DIGITS = {"e": 4, "z": 3, "z_plus": 3, "z_minus": 3, "beta_plus": 2, "beta_minus": 2}
+
+
+def time_step():
+    say("## Time step", "", "n = 300, p = 0.1 MPa, σe = 10 GPa, 3000 τ, against 0.025 τ, seed by seed.")
+    runs = defaultdict(dict)
+    for row in read("step.csv"):
+        if row["mark"] == "end":
+            runs[row["sigma_c"], row["seed"]][row["given_dt"]] = row
+    steps = sorted({dt for found in runs.values() for dt in found}, reverse=True)
+    reference = min(steps)
+    rows = []
+    figure, axes = plt.subplots(1, len(SHOWN), figsize=(13, 3))
+    for k, sigma_c in enumerate(sorted({s for s, _ in runs})):
+        full = [found for (s, _), found in runs.items() if s == sigma_c and all(dt in found for dt in steps)]
+        for dt in steps[:-1]:
+            used = np.mean([found[dt]["dt"] for found in full])
+            cells = [mega(sigma_c), f"{dt:g}" + ("" if abs(used - dt) < 1e-3 * dt else f" (lowered to {used:.3f})"), str(len(full))]
+            for name, _ in SHOWN:
+                cells.append(pm([difference(found[dt], found[reference], name) for found in full], DIGITS[name]))
+            rows.append(cells)
+        rows.append([mega(sigma_c), "scatter of a run", str(len(full))]
+                    + [f"{scatter([found[reference][name] for found in full]):.{DIGITS[name]}f}" for name, _ in SHOWN])
+        for axis, (name, label) in zip(axes, SHOWN):
+            shift = 1 + 0.04 * (k - 1)
+            points = [mean([difference(found[dt], found[reference], name) for found in full]) for dt in steps[:-1]]
+            axis.errorbar([dt * shift for dt in steps[:-1]], [m for m, _, _ in points],
+                          [1.96 * s for _, s, _ in points], fmt="o", ms=3, capsize=2, label=f"σc = {mega(sigma_c)} MPa")
+            axis.set_xscale("log")
+            axis.set_title(f"bias of {label}")
+            axis.set_xlabel("time step [τ]")
+    for axis in axes:
+        axis.axhline(0, color="0.6", lw=0.8)
+        axis.set_xticks(steps[:-1], [f"{dt:g}" for dt in steps[:-1]])
+        axis.minorticks_off()
+    axes[0].legend(fontsize=7)
+    save(figure, "time-step.svg")
+    table(["σc [MPa]", "time step [τ]", "seeds"] + [f"Δ{label}" for _, label in SHOWN], rows)
+    say("All scenes together, bias over the scatter of a single run (mean ± standard error):")
+    rows = []
+    for dt in steps[:-1]:
+        cells = [f"{dt:g}"]
+        for name, _ in SHOWN:
+            relative = []
+            for sigma_c in sorted({s for s, _ in runs}):
+                full = [f for (s, _), f in runs.items() if s == sigma_c and all(d in f for d in steps)]
+                single = scatter([f[d][name] for f in full for d in steps]) or math.nan
+                relative += [d / single for f in full
+                             if (d := difference(f[dt], f[reference], name)) is not None]
+            cells.append(pm(relative, 2))
+        rows.append(cells)
+    table(["time step [τ]"] + [label for _, label in SHOWN], rows)
+
+
+WINDOW = 1.25
+
+
+def judge(rows):
+    """What the evidence was at every sample, as sim-core/src/equilibrium/evidence.rs has it, and what may replace it."""
+    get = {name: np.array([r[name] for r in rows]) for name in
+           ["step", "t", "e", "z_plus", "z_minus", "ke", "ke_held", "eel"]}
+    walls = np.array([[r[f"wall_{w}"] for w in range(1, 7)] for r in rows])
+    found = []
+    for k in range(len(rows)):
+        first = int(np.searchsorted(get["t"][:k + 1], get["t"][k] / WINDOW))
+        low = max(first - 1, 0)
+        if first == 0 or k + 1 - low < 4:
+            found.append(None)
+            continue
+        window = slice(low, k + 1)
+        half = low + (k + 1 - low) // 2
+        change = lambda x: 2 * abs(np.mean(x[half:k + 1]) - np.mean(x[low:half]))
+        long = slice(max(int(np.searchsorted(get["t"][:k + 1], get["t"][k] / 2)) - 1, 0), k + 1)
+        trend = lambda x: abs(np.polyfit(np.log(np.maximum(get["t"][long], 1e-9)), x[long], 1)[0]) * math.log(WINDOW)
+        found.append({
+            "step": get["step"][k], "k": k,
+            "e_drift": np.ptp(get["e"][window]),
+            "walls": np.max(np.abs(np.mean(walls[window], axis=0) - 1)),
+            "z_drift": max(change(get["z_plus"]), change(get["z_minus"])),
+            "z_trend": max(trend(get["z_plus"]), trend(get["z_minus"])),
+            "ke": get["ke"][k] / max(get["eel"][k], 1e-300),
+            "held": get["ke_held"][k] / max(get["eel"][k], 1e-300),
+            "held_median": float(np.median(get["ke_held"][window] / np.maximum(get["eel"][window], 1e-300))),
+        })
+    return found
+
+
+def settled(f, e_drift):
+    return f["e_drift"] <= e_drift and f["walls"] <= 0.01
+
+
+RULES = {
+    "settled, 1e-3": lambda f: settled(f, 1e-3),
+    "settled, 2.5e-4": lambda f: settled(f, 2.5e-4),
+    "settled, 5e-5": lambda f: settled(f, 5e-5),
+    "evidence": lambda f: settled(f, 2.5e-4) and f["z_drift"] <= 0.02 and min(f["ke"], f["held"]) <= 2e-7,
+    "evidence without KE": lambda f: settled(f, 2.5e-4) and f["z_drift"] <= 0.02,
+    "evidence without Z": lambda f: settled(f, 2.5e-4) and min(f["ke"], f["held"]) <= 2e-7,
+    "trend of Z, held median 2e-7": lambda f: settled(f, 2.5e-4) and f["z_trend"] <= 0.02 and f["held_median"] <= 2e-7,
+    "trend of Z, held median 2e-6": lambda f: settled(f, 2.5e-4) and f["z_trend"] <= 0.02 and f["held_median"] <= 2e-6,
+    "trend of Z 0.02 alone": lambda f: settled(f, 2.5e-4) and f["z_trend"] <= 0.02,
+    "trend of Z 0.01 alone": lambda f: settled(f, 2.5e-4) and f["z_trend"] <= 0.01,
+    "paper: KE/E_el 2e-7": lambda f: f["ke"] <= 2e-7 and f["walls"] <= 0.1,
+}
+PLACES = ["sigma_c", "p", "sigma_e"]
+
+
+def place(row):
+    return tuple(row[name] for name in PLACES) + (row.get("wall_adhesion", 0.0),)
+
+
+def shortfall(name, kicks_name, title, rules):
+    """What stop rules and kicks miss against the end of the long runs of the same seed."""
+    say(f"## {title}", "")
+    ends = {row["scene"]: row for row in read(f"{name}.csv") if row["mark"] == "end" and row["approach"] == "natural"}
+    by_scene = defaultdict(list)
+    for row in read(f"{name}.series.csv"):
+        if row["scene"] in ends:
+            by_scene[row["scene"]].append(row)
+    way = defaultdict(list)
+    for row in read(f"{name}.csv"):
+        way[row["scene"]].append(row)
+    kicked = {(place(row), row["seed"]): row for row in read(f"{kicks_name}.csv")
+              if row["mark"] == "end" and row["approach"] == "rolling_kicks"}
+    collected = defaultdict(lambda: defaultdict(list))
+    for scene, rows in by_scene.items():
+        end = ends[scene]
+        # the end as a mean over the last tenth of the time, so that flicker is not taken for a difference
+        last = [r for r in rows if r["t"] >= 0.9 * rows[-1]["t"]]
+        final = {q: float(np.mean([r[q] for r in last])) for q in ["e", "z", "z_plus", "z_minus"]}
+        for beta in ["beta_plus", "beta_minus"]:
+            final[beta] = end[beta]
+        evidence = judge(rows)
+        for rule in rules:
+            hit = next((f for f in evidence if f is not None and RULES[rule](f)), None)
+            cell = collected[rule][place(end)]
+            cell.append({"missed": 1.0} if hit is None else
+                        {"steps": hit["step"], "share": hit["step"] / rows[-1]["step"],
+                         **{q: rows[hit["k"]][q] - final[q] for q in ["e", "z", "z_plus", "z_minus"]},
+                         **{b: d for b in ["beta_plus", "beta_minus"]
+                            if (d := near(way[scene], hit["step"], b, final[b])) is not None}})
+        row = kicked.get((place(end), end["seed"]))
+        if row is not None:
+            collected["rolling kicks"][place(end)].append(
+                {"steps": row["steps"], "share": row["steps"] / rows[-1]["step"],
+                 **{q: row[q] - final[q] for q in ["e", "z", "z_plus", "z_minus"]},
+                 **{b: row[b] - final[b] for b in ["beta_plus", "beta_minus"]
+                    if isinstance(row[b], float) and isinstance(final[b], float)}})
+        collected["single run"][place(end)].append(final)
+    return collected
+
+
+def near(rows, step, name, final):
+    """The value of the row on the way that is nearest to a step, less the final one."""
+    rows = [r for r in rows if isinstance(r[name], float)]
+    if not rows or not isinstance(final, float):
+        return None
+    best = min(rows, key=lambda r: abs(math.log(r["steps"] / step)))
+    return best[name] - final if abs(math.log(best["steps"] / step)) < 0.25 else None
+
+
+def summary(collected, rules):
+    names = ["e", "z", "z_plus", "z_minus", "beta_plus", "beta_minus"]
+    rows = []
+    for rule in rules + ["rolling kicks"]:
+        places = collected.get(rule, {})
+        runs = [r for found in places.values() for r in found]
+        hits = [r for r in runs if "missed" not in r]
+        if not runs:
+            continue
+        cells = [rule, f"{len(hits)} of {len(runs)}",
+                 f"{np.median([r['steps'] for r in hits]):.0f}" if hits else "–"]
+        for q in names:
+            means = [mean([r.get(q) for r in found if "missed" not in r]) for found in places.values()]
+            means = [m for m in means if m[2] > 0]
+            if not means:
+                cells.append("–")
+                continue
+            overall = mean([r.get(q) for r in hits])
+            worst = max(means, key=lambda m: abs(m[0]))
+            d = 5 if q == "e" else DIGITS[q]
+            cells.append(f"{overall[0]:+.{d}f} ± {overall[1]:.{d}f}; {worst[0]:+.{d}f}")
+        rows.append(cells)
+    singles = collected["single run"]
+    rows.append(["scatter of a single run", "", ""] + [
+        f"{np.sqrt(np.nanmean([scatter([r[q] for r in found]) ** 2 for found in singles.values()])):.{DIGITS[q]}f}" for q in names])
+    table(["rule", "stopped", "steps, median", "Δe", "ΔZ", "ΔZ+", "ΔZ−", "Δβ+", "Δβ−"], rows)
+
+
+def per_scene(collected, rules):
+    rows = []
+    for where in sorted(collected["single run"]):
+        for rule in rules:
+            found = [r for r in collected[rule][where]]
+            hits = [r for r in found if "missed" not in r]
+            rows.append([mega(where[0]), mega(where[1]), mega(where[2]), f"{where[3]:g}", rule, f"{len(hits)} of {len(found)}",
+                         f"{np.median([r['steps'] for r in hits]):.0f}" if hits else "–",
+                         f"{np.median([r['share'] for r in hits]):.3f}" if hits else "–"]
+                        + [pm([r.get(q) for r in hits], 5 if q == "e" else DIGITS[q]) for q in ["e", "z", "z_plus", "z_minus", "beta_plus", "beta_minus"]])
+    table(["σc [MPa]", "p [MPa]", "σe [MPa]", "wall adhesion", "rule", "stopped", "steps", "of the long run", "Δe", "ΔZ", "ΔZ+", "ΔZ−", "Δβ+", "Δβ−"], rows)
+
+
+def stop_figure(collected, rules):
+    figure, axes = plt.subplots(1, 4, figsize=(12, 3))
+    for rule in rules + ["rolling kicks"]:
+        places = collected.get(rule, {})
+        for axis, q in zip(axes, ["e", "z_plus", "z_minus", "beta_plus"]):
+            xs, ys = [], []
+            for found in places.values():
+                hits = [r for r in found if "missed" not in r and isinstance(r.get(q), float)]
+                if hits:
+                    xs.append(np.median([r["steps"] for r in hits]) * 17657 * NANOSECONDS * 1e-9)
+                    ys.append(max(abs(np.mean([r[q] for r in hits])), 1e-6))
+            axis.plot(xs, ys, "o", ms=3.5, label=rule)
+    for axis, label in zip(axes, ["e", "Z+", "Z−", "β+"]):
+        axis.set_xscale("log"), axis.set_yscale("log")
+        axis.set_xlabel("time of a full-size run [s]")
+        axis.set_title(f"|bias of {label}|")
+    axes[0].legend(fontsize=6)
+    save(figure, "stop.svg")
+
+
+def sizes():
+    say("## Number of spheres and replicates", "", "To `settled`, p = 0.1 MPa, σe = 10 GPa.")
+    runs = defaultdict(list)
+    for row in read("size.csv"):
+        if row["mark"] == "end":
+            runs[row["sigma_c"], row["n"]].append(row)
+    rows = []
+    figure, axes = plt.subplots(1, 4, figsize=(12, 3.2))
+    for color, sigma_c in enumerate(sorted({s for s, _ in runs})):
+        counts = sorted(n for s, n in runs if s == sigma_c)
+        for n in counts:
+            found = runs[sigma_c, n]
+            m, s, k = mean([r["e"] for r in found])
+            sd = scatter([r["e"] for r in found])
+            said = found[0]["e_se_scatter"]
+            rows.append([mega(sigma_c), f"{n:g}", str(k), f"{np.mean([r['steps'] for r in found]):.0f}",
+                         f"{np.mean([r['steps'] for r in found]) * n * NANOSECONDS * 1e-9:.2f}",
+                         f"{m:.4f} ± {s:.4f}", f"{sd:.4f}" if k > 1 else "–", f"{said:.4f}", f"{sd / said:.2f}" if k > 3 else "–"]
+                        + [f"{mean([r[q] for r in found])[0]:.3f}" for q in ["e_core", "z", "z_plus", "z_minus", "beta_plus", "beta_minus"]])
+        cost = [np.mean([r["steps"] for r in runs[sigma_c, n]]) * n * NANOSECONDS * 1e-9 for n in counts]
+        means = [mean([r["e"] for r in runs[sigma_c, n]]) for n in counts]
+        label = f"σc = {mega(sigma_c)} MPa"
+        axes[0].errorbar(cost, [m for m, _, _ in means], [1.96 * s for _, s, _ in means], fmt="o-", ms=3, capsize=2, label=label)
+        axes[1].plot(cost, [scatter([r["e"] for r in runs[sigma_c, n]]) for n in counts], "o-", ms=3, color=f"C{color}")
+        axes[1].plot(cost, [runs[sigma_c, n][0]["e_se_scatter"] for n in counts], ":", color=f"C{color}")
+        inverse = [n ** (-1 / 3) for n in counts]
+        axes[2].errorbar(inverse, [m for m, _, _ in means], [1.96 * s for _, s, _ in means], fmt="o", ms=3, capsize=2)
+        many = [n for n in counts if n >= 250]
+        if len(many) > 2:
+            slope, at = np.polyfit([n ** (-1 / 3) for n in many], [mean([r["e"] for r in runs[sigma_c, n]])[0] for n in many], 1)
+            axes[2].plot([0, 0.2], [at, at + 0.2 * slope], "-", lw=0.8, color=f"C{color}")
+        axes[3].plot(cost, [np.mean([r["z_minus"] for r in runs[sigma_c, n]]) for n in counts], "o-", ms=3, color=f"C{color}")
+    for axis in (axes[0], axes[1], axes[3]):
+        axis.set_xscale("log")
+        axis.set_xlabel("cost of a run [s]")
+    axes[1].set_yscale("log")
+    axes[0].set_title("e"), axes[1].set_title("scatter of e (dotted: what a record says)")
+    axes[2].set_title("e against n^(−1/3)"), axes[2].set_xlabel("n^(−1/3)"), axes[3].set_title("Z−")
+    axes[0].legend(fontsize=7)
+    save(figure, "size.svg")
+    table(["σc [MPa]", "n", "seeds", "steps", "cost [s]", "e", "scatter of e", "e_se_scatter", "measured/said", "e_core", "Z", "Z+", "Z−", "β+", "β−"], rows)
+
+
+def convergence():
+    say("## Deterministic cases", "")
+    cases = defaultdict(list)
+    for row in read("convergence.csv"):
+        cases[row["case"]].append((row["dt"], row["error"]))
+    rows = []
+    figure, axis = plt.subplots(figsize=(4.6, 3.4))
+    for name, points in cases.items():
+        points.sort(reverse=True)
+        slope = math.log(points[0][1] / points[-1][1]) / math.log(points[0][0] / points[-1][0])
+        rows.append([name] + [f"{error:.1e}" for _, error in points] + [f"{slope:.2f}"])
+        axis.loglog([dt for dt, _ in points], [error for _, error in points], "o-", ms=3, label=f"{name}, order {slope:.2f}")
+    axis.set_xlabel("time step [τ]")
+    axis.set_ylabel("relative error")
+    axis.legend(fontsize=6)
+    save(figure, "convergence.svg")
+    table(["case"] + [f"{dt:g} τ" for dt, _ in sorted(next(iter(cases.values())), reverse=True)] + ["order"], rows)
+
+
+if __name__ == "__main__":
+    import sys
+    parts = sys.argv[1:] or ["convergence", "step", "size", "stop", "kicks"]
+    if "convergence" in parts:
+        convergence()
+    if "step" in parts:
+        time_step()
+    if "size" in parts:
+        sizes()
+    if "stop" in parts:
+        found = shortfall("stop", "kicks", "Stop rules and kicks", list(RULES))
+        say("Bias against the mean over the last tenth of a long run of the same seed: mean over all runs ± standard error; worst scene mean.")
+        summary(found, list(RULES))
+        per_scene(found, ["settled, 2.5e-4", "evidence", "trend of Z 0.02 alone", "rolling kicks"])
+        stop_figure(found, ["settled, 1e-3", "settled, 2.5e-4", "evidence"])
+    if "kicks" in parts:
+        found = shortfall("kicks-wide", "kicks-wide", "Kicks elsewhere", ["settled, 2.5e-4", "evidence"])
+        summary(found, ["settled, 2.5e-4", "evidence"])
+        per_scene(found, ["settled, 2.5e-4", "rolling kicks"])
+    (HERE / "tables.md").write_text("# Tables of the error study\n\nWritten by `study.py`.\n\n" + "\n".join(OUT) + "\n")
