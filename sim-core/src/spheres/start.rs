@@ -12,6 +12,8 @@ use crate::{Explanation, Options, Saving, SimError, Skip};
 pub(crate) const LARGEST_DT: f64 = 0.13;
 /// Largest share of the critical time step of the present network that is used.
 const SAFETY: f64 = 0.7;
+/// Contacts that a wall may gather unseen, between two samples.
+const SUDDEN_CONTACTS: f64 = 16.0;
 /// 2^(−1/8): how finely the time step is lowered [1].
 const EIGHTH_OF_AN_OCTAVE: f64 = 0.917_004_043_204_671_2;
 /// Farthest a particle may fly in one step at the start [d].
@@ -47,8 +49,15 @@ pub(crate) fn largest_dt(scene: &ReducedSpheres) -> (f64, String) {
     }
     let flight =
         if scene.agitation_speed > 0.0 { FARTHEST_FLIGHT / scene.agitation_speed } else { f64::INFINITY };
-    if flight < LARGEST_DT {
+    // The contacts that a wall can gather between two samples: one per d² of a small wall.
+    let lengths = packing::box_lengths(usize::try_from(scene.n).unwrap_or(usize::MAX), scene.ei.min(1.0));
+    let first_contacts = (lengths[1] * lengths[2]).clamp(1.0, SUDDEN_CONTACTS);
+    let wall = SAFETY * on_wall(scene, first_contacts);
+    if flight < LARGEST_DT && flight <= wall {
         return (flight, "a particle flies at most 0.02 d per step at the start".to_owned());
+    }
+    if wall < LARGEST_DT {
+        return (wall, "stiffest mode of a wall on its first contacts".to_owned());
     }
     (LARGEST_DT, format!("{LARGEST_DT} τ, below the stiffest mode"))
 }
@@ -64,7 +73,12 @@ pub(crate) fn walls_limit(scene: &ReducedSpheres, view: &View) -> f64 {
     }
     let most =
         contacts.into_iter().zip(moving(scene)).filter_map(|(count, moves)| moves.then_some(count)).max();
-    let over_mass = most.unwrap_or(0) as f64 / scene.wall_mass;
+    on_wall(scene, most.unwrap_or(0) as f64)
+}
+
+/// Critical time step of a wall on a number of contacts [τ].
+fn on_wall(scene: &ReducedSpheres, contacts: f64) -> f64 {
+    let over_mass = contacts / scene.wall_mass;
     largest_step(2.0 * over_mass, 4.0 * scene.alpha_n * over_mass)
 }
 

@@ -58,3 +58,12 @@ print(f"steps of {len(counts)} runs at n = 1000 and the full-size time step: {su
 for ns in map(float, sys.argv[1:] or ["30"]):
     hours = steps * math.exp(middle + spread * spread / 2) * N * ns * 1e-9 / 3600 / CORES
     print(f"{ns:g} ns per particle-step: {hours:.1f} h to settled e on {CORES} cores; longest run {counts[0] * math.exp(middle) * N * ns * 1e-9 / 3600:.1f} h")
+
+
+def limit(row):
+    """Step limit of the rule `evidence`: 20 settling times 0.452 (σe/p)^0.7 τ."""
+    return 20 * 0.452 * (float(row["sigma_e"]) / float(row["p"])) ** 0.7 / dt(row)
+
+
+limits = sum(limit(r) for r in small.values()) * (1 + missing / 291)
+print(f"all to the step limit of `evidence`: {limits / 1e6:.0f} million steps, {limits * N * 30e-9 / 3600 / CORES:.0f} h at 30 ns")
