@@ -100,7 +100,7 @@ fn number(value: f64) -> String {
     if value == value.trunc() && value.abs() < 1e15 {
         format!("{value}")
     } else {
-        format!("{:.6e}", value).parse::<f64>().map_or_else(|_| value.to_string(), |short| short.to_string())
+        format!("{value:.6e}").parse::<f64>().map_or_else(|_| value.to_string(), |short| short.to_string())
     }
 }
 
