@@ -1,4 +1,7 @@
-//! A packing as a legacy VTK file: particles as points, contacts as lines between them.
+//! A packing as a legacy VTK file: particles as points, contacts as lines between them; deformable bodies with their
+//! material points and outlines.
+
+mod bodies;
 
 use std::fmt::Write as _;
 
@@ -13,6 +16,10 @@ pub struct NoPicture(pub &'static str);
 /// table `particles`, lines from `i` and `j` of the table `contacts`; every other column becomes point or cell data
 /// of its name. Contacts that do not join two particles (walls) have no line and are left out.
 ///
+/// Where the packing has tables `points` and `outlines` of deformable bodies, these are drawn instead: a vertex per
+/// material point with its columns (von Mises stress, plastic strain, …) as point data, a closed line per outline with
+/// the columns of the particle as cell data. Lengths are those of the tables.
+///
 /// # Errors
 /// [`NoPicture`] when there are no particles with positions.
 pub fn vtk(packing: &Packing, title: &str) -> Result<String, NoPicture> {
@@ -20,14 +27,18 @@ pub fn vtk(packing: &Packing, title: &str) -> Result<String, NoPicture> {
     let (Some(x), Some(y)) = (particles.column("x"), particles.column("y")) else {
         return Err(NoPicture("its particles have no positions x, y"));
     };
+    // the title is one line
+    let title: Vec<&str> = title.split_whitespace().collect();
+    let mut text = format!("# vtk DataFile Version 3.0\ntamp {}\nASCII\nDATASET POLYDATA\n", title.join(" "));
+    if let Some(bodies) = bodies::Bodies::of(packing, particles) {
+        bodies.write(&mut text);
+        return Ok(text);
+    }
     let z = particles.column("z").unwrap_or_else(|| vec![0.0; x.len()]);
     let contacts = packing.0.get("contacts");
     let pairs = contacts.map(|table| pairs(table, x.len())).unwrap_or_default();
 
     let n = x.len();
-    // the title is one line
-    let title: Vec<&str> = title.split_whitespace().collect();
-    let mut text = format!("# vtk DataFile Version 3.0\ntamp {}\nASCII\nDATASET POLYDATA\n", title.join(" "));
     line(&mut text, format_args!("POINTS {n} double"));
     for ((x, y), z) in x.iter().zip(&y).zip(&z) {
         line(&mut text, format_args!("{x:?} {y:?} {z:?}"));
@@ -108,6 +119,39 @@ mod tests {
             POINT_DATA 2\nSCALARS contacts double 1\nLOOKUP_TABLE default\n1.0\n2.0\n\
             CELL_DATA 3\nSCALARS f_n double 1\nLOOKUP_TABLE default\n0.0\n0.0\n2e-9\n";
         assert_eq!(vtk(&packing, "a\nb").unwrap(), expected);
+    }
+
+    #[test]
+    fn deformable_bodies_show_points_and_outlines() {
+        let table = |columns: &[(&str, &[f64])]| {
+            let mut table = Table::new();
+            for (name, values) in columns {
+                table.push(name, "1", values).unwrap();
+            }
+            table
+        };
+        let particles = table(&[("x", &[0.5, 2.5]), ("y", &[0.5, 0.5]), ("f_p", &[0.25, 0.75])]);
+        let points = table(&[
+            ("disc", &[0.0, 1.0]),
+            ("x", &[0.5, 2.5]),
+            ("y", &[0.5, 0.5]),
+            ("von_mises", &[0.01, 0.02]),
+        ]);
+        let outlines = table(&[
+            ("disc", &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0]),
+            ("x", &[0.0, 1.0, 0.5, 2.0, 3.0, 2.5]),
+            ("y", &[0.0, 0.0, 1.0, 0.0, 0.0, 1.0]),
+        ]);
+        let tables = [("particles", particles), ("points", points), ("outlines", outlines)];
+        let packing = Packing(tables.map(|(name, table)| (name.to_owned(), table)).into());
+        let expected = "# vtk DataFile Version 3.0\ntamp two\nASCII\nDATASET POLYDATA\nPOINTS 8 double\n\
+            0.5 0.5 0.0\n2.5 0.5 0.0\n0.0 0.0 0.0\n1.0 0.0 0.0\n0.5 1.0 0.0\n2.0 0.0 0.0\n3.0 0.0 0.0\n2.5 1.0 0.0\n\
+            VERTICES 2 4\n1 0\n1 1\nLINES 2 10\n4 2 3 4 2\n4 5 6 7 5\nPOINT_DATA 8\n\
+            SCALARS outline double 1\nLOOKUP_TABLE default\n0.0\n0.0\n1.0\n1.0\n1.0\n1.0\n1.0\n1.0\n\
+            SCALARS disc double 1\nLOOKUP_TABLE default\n0.0\n1.0\n0.0\n0.0\n0.0\n1.0\n1.0\n1.0\n\
+            SCALARS von_mises double 1\nLOOKUP_TABLE default\n0.01\n0.02\n0.0\n0.0\n0.0\n0.0\n0.0\n0.0\n\
+            CELL_DATA 4\nSCALARS f_p double 1\nLOOKUP_TABLE default\n0.0\n0.0\n0.25\n0.75\n";
+        assert_eq!(vtk(&packing, "two").unwrap(), expected);
     }
 
     #[test]

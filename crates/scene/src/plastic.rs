@@ -76,6 +76,17 @@ pub enum Contact {
     CommonMesh,
 }
 
+/// How the discs of an assembly move before the first step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StartVelocity {
+    /// Nothing moves: the wall sends a front ahead of itself.
+    #[default]
+    Rest,
+    /// As if the box had always been closing, v_y = −v y/h: no front.
+    Uniform,
+}
+
 /// How strain and rotation are read from the motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -120,6 +131,13 @@ pub struct Plastic {
     pub mu: f64,
     /// Speed at which the box closes [m/s]; `None`: 2 m/s in an assembly, else 0.5 m/s.
     pub wall_speed: Option<f64>,
+    /// Speed at which the box begins to close [m/s]; `None`: `wall_speed` from first to last.
+    pub wall_speed_start: Option<f64>,
+    /// Kinetic energy of uniform closing over elastic energy that the speed may grow to [1]; no effect without
+    /// `wall_speed_start`.
+    pub inertia_ratio: f64,
+    /// How the discs of an assembly move before the first step.
+    pub start_velocity: StartVelocity,
     /// Solid fraction at which the run ends [1]; `None`: 0.97, none for diametrical compression.
     pub phi_end: Option<f64>,
     /// Nominal strain 1 − h/h_i at which the run ends [1]; `None`: 0.17 for diametrical compression, else 0.45.
@@ -168,6 +186,12 @@ pub struct ReducedPlastic {
     pub mu: f64,
     /// Speed at which the box closes [√(E/ρ)].
     pub wall_speed: f64,
+    /// Speed programme of the wall; `None`: one speed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pace: Option<Pace>,
+    /// How the discs of an assembly move before the first step.
+    #[serde(default, skip_serializing_if = "is_default")]
+    pub start_velocity: StartVelocity,
     /// Solid fraction at which the run ends [1]; `None`: by strain alone.
     pub phi_end: Option<f64>,
     /// Nominal strain at which the run ends [1].
@@ -196,4 +220,15 @@ pub struct ReducedPlastic {
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
+}
+
+/// A wall that begins slowly and speeds up as the elastic energy allows: v² = 6 r E_el/m between `speed` and the
+/// speed of the scene, m v²/6 being the kinetic energy of uniform closing.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Pace {
+    /// Speed at the start, the least one [√(E/ρ)].
+    pub speed: f64,
+    /// Kinetic energy of uniform closing over elastic energy, r [1].
+    pub ratio: f64,
 }

@@ -79,13 +79,13 @@ impl Implicit {
     /// The [`Failure`] of the shortest step tried; the world is then at the last converged time.
     pub fn step(&mut self, world: &mut World, dt: f64) -> Result<(), Failure> {
         // a binary clock of substeps: `level` is the present halving, `done` the share of the step that is behind
-        let (mut level, mut done) = (0_u32, 0_u64);
+        let (mut level, mut done) = (start_level(world, dt), 0_u64);
         let whole = 1_u64 << world.numerics.halvings;
         while done < whole {
             match self.attempt(world, dt / (1_u64 << level) as f64) {
                 Ok(()) => {
                     done += whole >> level;
-                    while level > 0 && done.is_multiple_of(whole >> (level - 1)) {
+                    if level > 0 && done.is_multiple_of(whole >> (level - 1)) {
                         level -= 1;
                     }
                 }
@@ -392,6 +392,19 @@ fn beyond_reach(candidate: &Candidate, bodies: &[Body]) -> Option<usize> {
     let next = (candidate.segment + 1) % template.markers.len() as u32;
     let both = template.reaches(candidate.segment) && template.reaches(next);
     (!both).then_some(other as usize)
+}
+
+/// Halving that a step begins with: one less than the last step ended with. Where contacts form and break, the whole
+/// step would fail again and again.
+fn start_level(world: &World, dt: f64) -> u32 {
+    let mut level = 0;
+    while level < world.numerics.halvings
+        && world.last_dt > 0.0
+        && world.last_dt < 0.3 * dt / f64::from(1_u32 << level)
+    {
+        level += 1;
+    }
+    level
 }
 
 /// The values of the contact unknowns in the order of their rows.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use scene::plastic::{Contact, ReducedPlastic, Rotation, Setup, Variant};
+use scene::plastic::{Contact, ReducedPlastic, Rotation, Setup, StartVelocity, Variant};
 
 use super::body::Body;
 use super::constitutive::{Hardening, Kinematics, Material};
@@ -52,9 +52,15 @@ pub fn build(scene: &ReducedPlastic) -> Result<Scenery, SimError> {
                 remedy: "lower phi_i".to_owned(),
             })?;
             let places = packing.radii.iter().zip(&packing.centres);
-            let bodies = places.map(|(&r, &centre)| shapes.body(r, centre)).collect();
+            let mut bodies: Vec<Body> = places.map(|(&r, &centre)| shapes.body(r, centre)).collect();
             let (width, height) = (packing.width, packing.height);
-            let walls = [level(0.0, 1.0, 0.0), level(height, -1.0, -scene.wall_speed)]
+            let speed = start_speed(scene);
+            if scene.start_velocity == StartVelocity::Uniform {
+                for (body, centre) in bodies.iter_mut().zip(&packing.centres) {
+                    move_up(body, -speed * centre[1] / height);
+                }
+            }
+            let walls = [level(0.0, 1.0, 0.0), level(height, -1.0, -speed)]
                 .into_iter()
                 .chain(sides(0.0, width))
                 .collect();
@@ -62,13 +68,13 @@ pub fn build(scene: &ReducedPlastic) -> Result<Scenery, SimError> {
         }
         Setup::Diametrical => {
             let body = shapes.body(0.5, [0.0, 0.5]);
-            let walls = vec![level(0.0, 1.0, 0.0), level(1.0, -1.0, -scene.wall_speed)];
+            let walls = vec![level(0.0, 1.0, 0.0), level(1.0, -1.0, -start_speed(scene))];
             Ok(finished(World::new(vec![body], walls, law), scene, 1.0, 1.0))
         }
         Setup::Cell => {
             // without friction nothing but the mesh would hold the spin of the disc
             let body = shapes.body(0.5, [0.0, 0.0]);
-            let half = 0.5 * scene.wall_speed;
+            let half = 0.5 * start_speed(scene);
             let walls = [level(-0.5, 1.0, half), level(0.5, -1.0, -half)]
                 .into_iter()
                 .chain(sides(-0.5, 0.5))
@@ -131,6 +137,19 @@ fn finished(mut world: World, scene: &ReducedPlastic, width: f64, height: f64) -
     };
     updated::regrid(&mut world);
     Scenery { world, width, height }
+}
+
+/// Speed at which the box begins to close.
+fn start_speed(scene: &ReducedPlastic) -> f64 {
+    scene.pace.map_or(scene.wall_speed, |pace| pace.speed)
+}
+
+/// The whole body at one vertical speed.
+fn move_up(body: &mut Body, speed: f64) {
+    body.velocity.iter_mut().skip(1).step_by(2).for_each(|v| *v = speed);
+    if let Some(cloud) = &mut body.cloud {
+        cloud.velocity.iter_mut().for_each(|v| v[1] = speed);
+    }
 }
 
 fn law(scene: &ReducedPlastic) -> Law {

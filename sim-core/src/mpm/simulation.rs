@@ -53,11 +53,17 @@ impl Solver {
 
     /// The step until the next record: as the scene has it, and within the stable one.
     fn time_step(&self, scene: &ReducedPlastic, world: &World) -> f64 {
+        let speed = closing_speed(world);
         match self {
-            Self::Implicit(_) => scene.time_step(),
-            Self::Explicit(explicit) => scene.whole_step(explicit.time_step(world)),
+            Self::Implicit(_) => scene.time_step_at(speed),
+            Self::Explicit(explicit) => scene.whole_step(explicit.time_step(world), speed),
         }
     }
+}
+
+/// Speed at which the box closes.
+fn closing_speed(world: &World) -> f64 {
+    world.walls[BOTTOM].velocity[1] - world.walls[TOP].velocity[1]
 }
 
 /// The simulation.
@@ -117,11 +123,29 @@ impl PlasticDiscs {
         };
         done.map_err(|failure| SimError::NotConverged { step, what: failure.to_string() })?;
         self.log.steps = step;
+        self.pace();
         let strain = self.strain();
         if strain >= self.log.next_strain * (1.0 - 1e-9) || strain >= self.scene.strain_end * (1.0 - 1e-9) {
             self.record(strain);
         }
         Ok(())
+    }
+
+    /// The speed of the walls in the next step, if the scene has a programme. It follows the bound within the time an
+    /// S-wave takes through the box, so that a change is no shock.
+    fn pace(&mut self) {
+        let Some(pace) = self.scene.pace else { return };
+        let elastic = self.log.states.last().map_or(0.0, |state| state.elastic);
+        let mass: f64 = self.world.bodies.iter().flat_map(|body| &body.mass).sum();
+        let allowed = (6.0 * pace.ratio * elastic / mass).sqrt().min(self.scene.wall_speed).max(pace.speed);
+        let material = &self.world.law.material;
+        let crossing = self.height / (material.shear() / material.density).sqrt();
+        let speed = closing_speed(&self.world);
+        let share = (self.world.last_dt / crossing).min(1.0);
+        let factor = (speed + share * (allowed - speed)) / speed;
+        for wall in &mut self.world.walls {
+            wall.velocity = wall.velocity.map(|v| v * factor);
+        }
     }
 
     fn strain(&self) -> f64 {

@@ -3,7 +3,11 @@
 //! A body has a few hundred unknowns and a fixed sparsity, and contact needs the exact compliance of its boundary:
 //! a skyline with the contact unknowns last gives it from the last block of the factor.
 
-/// Where the entries of the lower triangle lie.
+mod plain;
+#[cfg(target_arch = "x86_64")]
+mod wide;
+
+/// Where the entries of the lower triangle lie. Both unknowns of a node have the same first column, an even one.
 #[derive(Clone, Debug)]
 pub struct Profile {
     /// Row of each unknown (unknown 2a + i is component i of node a).
@@ -94,24 +98,6 @@ impl Profile {
     }
 }
 
-/// Σ a_i b_i in four fixed chains: the same bits in every build.
-#[inline]
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut chains = [0.0; 4];
-    let (a4, a_rest) = a.as_chunks::<4>();
-    let (b4, b_rest) = b.as_chunks::<4>();
-    for (x, y) in a4.iter().zip(b4) {
-        for k in 0..4 {
-            chains[k] += x[k] * y[k];
-        }
-    }
-    let mut sum = (chains[0] + chains[2]) + (chains[1] + chains[3]);
-    for (x, y) in a_rest.iter().zip(b_rest) {
-        sum += x * y;
-    }
-    sum
-}
-
 impl Skyline {
     /// A zero matrix.
     #[must_use]
@@ -135,48 +121,22 @@ impl Skyline {
     /// # Errors
     /// [`NotPositive`] when a pivot is not positive; the content is then void.
     pub fn factorise(&mut self, profile: &Profile) -> Result<(), NotPositive> {
-        for row in 0..profile.size() {
-            let (done, rest) = self.values.split_at_mut(profile.start[row] as usize);
-            let first = profile.first[row] as usize;
-            let current = &mut rest[..=row - first];
-            for column in first..row {
-                let other = profile.slice(done, column);
-                let other_first = profile.first[column] as usize;
-                let from = first.max(other_first);
-                let sum = dot(
-                    &current[from - first..column - first],
-                    &other[from - other_first..column - other_first],
-                );
-                current[column - first] = (current[column - first] - sum) * other[column - other_first];
-            }
-            let (head, diagonal) = current.split_at_mut(row - first);
-            let pivot = diagonal[0] - dot(head, head);
-            if pivot.is_nan() || pivot <= 0.0 {
-                return Err(NotPositive);
-            }
-            diagonal[0] = 1.0 / pivot.sqrt();
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the feature was detected.
+            return unsafe { wide::factorise(&mut self.values, profile) };
         }
-        Ok(())
+        plain::factorise(&mut self.values, profile)
     }
 
     /// Solves L Lᵀ x = b in place; `b` in the order of the rows.
     pub fn solve_rows(&self, profile: &Profile, b: &mut [f64]) {
-        for row in 0..profile.size() {
-            let line = profile.slice(&self.values, row);
-            let first = profile.first[row] as usize;
-            let n = row - first;
-            b[row] = (b[row] - dot(&line[..n], &b[first..row])) * line[n];
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the feature was detected.
+            return unsafe { wide::solve(&self.values, profile, b) };
         }
-        for row in (0..profile.size()).rev() {
-            let line = profile.slice(&self.values, row);
-            let first = profile.first[row] as usize;
-            let n = row - first;
-            let x = b[row] * line[n];
-            b[row] = x;
-            for (target, l) in b[first..row].iter_mut().zip(line) {
-                *target -= l * x;
-            }
-        }
+        plain::solve(&self.values, profile, b);
     }
 
     /// Solves for a vector in the order of the unknowns, with `scratch` of the same length.
@@ -194,41 +154,12 @@ impl Skyline {
 
     /// The contact block of the inverse, (L_bb L_bbᵀ)⁻¹, dense and row by row in the order of the contact rows.
     pub fn contact_compliance(&self, profile: &Profile, out: &mut Vec<f64>) {
-        let n = profile.contact;
-        let offset = profile.size() - n;
-        out.clear();
-        out.resize(n * n, 0.0);
-        // rows of the inverse of L_bb by forward substitution: inv[i][..] = (e_i − Σ_{k<i} L_ik inv[k][..]) / L_ii
-        let mut inverse = vec![0.0; n * n];
-        for i in 0..n {
-            let line = profile.slice(&self.values, offset + i);
-            let first = profile.first[offset + i] as usize;
-            let (done, rest) = inverse.split_at_mut(i * n);
-            let current = &mut rest[..=i];
-            current[i] = 1.0;
-            for k in first.max(offset) - offset..i {
-                let l = line[offset + k - first];
-                for (target, value) in current[..=k].iter_mut().zip(&done[k * n..=k * n + k]) {
-                    *target -= l * value;
-                }
-            }
-            let diagonal = line[offset + i - first];
-            current.iter_mut().for_each(|value| *value *= diagonal);
+        #[cfg(target_arch = "x86_64")]
+        if std::arch::is_x86_feature_detected!("avx2") {
+            // SAFETY: the feature was detected.
+            return unsafe { wide::compliance(&self.values, profile, out) };
         }
-        // out = invᵀ inv, summed over rows in order
-        for k in 0..n {
-            let row = &inverse[k * n..=k * n + k];
-            for (i, &a) in row.iter().enumerate() {
-                for (target, &b) in out[i * n..=i * n + i].iter_mut().zip(row) {
-                    *target += a * b;
-                }
-            }
-        }
-        for i in 0..n {
-            for j in i + 1..n {
-                out[i * n + j] = out[j * n + i];
-            }
-        }
+        plain::compliance(&self.values, profile, out);
     }
 }
 
@@ -267,7 +198,8 @@ mod tests {
         let n = profile.size();
         let mut scratch = Vec::new();
         let exact: Vec<f64> = (0..n).map(|i| libm::cos(i as f64)).collect();
-        let mut b: Vec<f64> = full.iter().map(|row| dot(row, &exact)).collect();
+        let mut b: Vec<f64> =
+            full.iter().map(|row| row.iter().zip(&exact).map(|(a, b)| a * b).sum()).collect();
         matrix.solve(&profile, &mut b, &mut scratch);
         assert!(b.iter().zip(&exact).all(|(x, y)| (x - y).abs() < 1e-12));
         let mut compliance = Vec::new();
@@ -281,6 +213,31 @@ mod tests {
                 assert!((compliance[i * m + j] - column[n - m + i]).abs() < 1e-13);
             }
         }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[test]
+    fn wide_lanes_have_the_bits_of_plain_ones() {
+        if !std::arch::is_x86_feature_detected!("avx2") {
+            return;
+        }
+        let (profile, matrix, _) = example();
+        let (mut a, mut b) = (matrix.values.clone(), matrix.values);
+        plain::factorise(&mut a, &profile).unwrap();
+        // SAFETY: the feature was detected.
+        unsafe { wide::factorise(&mut b, &profile).unwrap() };
+        assert_eq!(a, b);
+        let mut x: [Vec<f64>; 2] =
+            std::array::from_fn(|_| (0..profile.size()).map(|i| libm::sin(i as f64)).collect());
+        let mut inverse = [Vec::new(), Vec::new()];
+        plain::solve(&a, &profile, &mut x[0]);
+        plain::compliance(&a, &profile, &mut inverse[0]);
+        // SAFETY: the feature was detected.
+        unsafe {
+            wide::solve(&a, &profile, &mut x[1]);
+            wide::compliance(&a, &profile, &mut inverse[1]);
+        }
+        assert!(x[0] == x[1] && inverse[0] == inverse[1]);
     }
 
     #[test]

@@ -3,6 +3,7 @@
 
 mod assembly;
 mod bodies;
+mod closed_form;
 mod explicit;
 mod material_point;
 mod reference;

@@ -59,6 +59,14 @@ const CONTACTS: &[Word] = &[
     },
 ];
 
+const STARTS: &[Word] = &[
+    Word { name: "rest", meaning: "nothing moves; the wall sends a front ahead of itself" },
+    Word {
+        name: "uniform",
+        meaning: "as if the box had always been closing, v_y = −v y/h: no front, less inertia by (h/d)²",
+    },
+];
+
 const ROTATIONS: &[Word] = &[
     Word { name: "jaumann", meaning: "midpoint strain, stress rotated with the material: objective" },
     Word { name: "infinitesimal", meaning: "infinitesimal strain taken literally, no rotation" },
@@ -187,6 +195,30 @@ pub(super) const KEYS: &[Key] = &[
         source: "2021, sections 3 and 4",
     },
     Key {
+        name: "wall_speed_start",
+        unit: "m/s",
+        domain: Domain::Auto(&Domain::Real(Bound::Excluding(0.0), Bound::Including(1e4))),
+        absent: Absent::Default("\"auto\""),
+        meaning: "speed at which the box begins to close; it rises to wall_speed as inertia_ratio allows; \"auto\": wall_speed throughout",
+        source: "choice, see docs/notation.md",
+    },
+    Key {
+        name: "inertia_ratio",
+        unit: "1",
+        domain: Domain::Real(Bound::Excluding(0.0), Bound::Including(1.0)),
+        absent: Absent::Default("0.01"),
+        meaning: "kinetic energy of uniform closing (m v²/6) over elastic energy that the speed may rise to; no effect without wall_speed_start",
+        source: "choice, see docs/notation.md",
+    },
+    Key {
+        name: "start_velocity",
+        unit: "-",
+        domain: Domain::Word(STARTS),
+        absent: Absent::Default("\"rest\""),
+        meaning: "how the discs of an assembly move before the first step",
+        source: "choice, see docs/notation.md",
+    },
+    Key {
         name: "phi_end",
         unit: "1",
         domain: Domain::Auto(&Domain::Real(Bound::Excluding(0.0), Bound::Including(1.2))),
@@ -297,6 +329,10 @@ pub(super) fn conflicts(scene: &Plastic) -> Vec<Problem> {
         let value = serde_json::to_value(scene.contact).unwrap_or_default();
         let remedy = "use variant updated_cubic, or contact markers";
         problems.push(Problem::new("contact", &value, "needs bodies on grids with common nodes", remedy));
+    }
+    if let Some(start) = scene.wall_speed_start.filter(|start| *start > scene.speed()) {
+        let remedy = "lower it, or raise wall_speed: the speed only rises on the way";
+        problems.push(Problem::new("wall_speed_start", &Value::from(start), "is above wall_speed", remedy));
     }
     if let (Setup::Assembly, Some(phi)) = (scene.setup, scene.phi_end.filter(|phi| *phi <= scene.phi_i)) {
         let remedy = "raise it above phi_i";

@@ -2,7 +2,7 @@
 
 use super::keys::KEYS;
 use super::quantities::QUANTITIES;
-use super::{HardeningMeaning, Material, Plastic, ReducedPlastic, Setup};
+use super::{HardeningMeaning, Material, Pace, Plastic, ReducedPlastic, Setup, StartVelocity};
 use crate::description::Description;
 use crate::table::Key;
 use crate::{Model, Problem, Quantity, round12};
@@ -32,6 +32,11 @@ impl Description for Plastic {
             seed: if assembly { self.seed } else { 0 },
             mu: round12(self.mu),
             wall_speed: round12(self.speed() / self.speed_unit()),
+            pace: self.wall_speed_start.map(|speed| Pace {
+                speed: round12(speed / self.speed_unit()),
+                ratio: round12(self.inertia_ratio),
+            }),
+            start_velocity: if assembly { self.start_velocity } else { StartVelocity::Rest },
             phi_end: self.last_solid_fraction().map(round12),
             strain_end: round12(self.last_strain()),
             method: self.method,

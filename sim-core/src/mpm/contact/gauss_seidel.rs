@@ -92,6 +92,14 @@ pub fn prepare(rows: &mut Rows, compliance: &[Vec<f64>], sizes: &[usize], fricti
     }
 }
 
+/// Over-relaxation of contacts without friction: markers of one contact zone stand in for each other, which plain sweeps
+/// sort out slowly: half the sweeps of the factor 1 (30 discs, 12 cells: 425 for 880 a step). Any factor between 0 and 2
+/// converges, the problem being a convex quadratic one with bounds.
+const RELAXATION: f64 = 1.7;
+/// Tolerance below which sweeps are plain: which of two redundant markers bears what then settles in one way, and
+/// Newton's iteration does not go round in circles at its last digits.
+const STRICT: f64 = 1e-6;
+
 /// Sweeps until the impulses stand still; `velocities` holds the contact velocities without any impulse of `rows` and
 /// is updated to the velocities with them.
 pub fn solve(
@@ -101,6 +109,36 @@ pub fn solve(
     friction: f64,
     tolerance: Tolerance,
 ) -> Solve {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx2") {
+        // SAFETY: the feature was detected.
+        return unsafe { wide(rows, velocities, sizes, friction, tolerance) };
+    }
+    sweeps(rows, velocities, sizes, friction, tolerance)
+}
+
+/// The same operations with wider lanes: the same bits.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+fn wide(
+    rows: &mut Rows,
+    velocities: &mut [Vec<f64>],
+    sizes: &[usize],
+    friction: f64,
+    tolerance: Tolerance,
+) -> Solve {
+    sweeps(rows, velocities, sizes, friction, tolerance)
+}
+
+#[inline(always)]
+fn sweeps(
+    rows: &mut Rows,
+    velocities: &mut [Vec<f64>],
+    sizes: &[usize],
+    friction: f64,
+    tolerance: Tolerance,
+) -> Solve {
+    let relaxation = if tolerance.impulse < STRICT { 1.0 } else { RELAXATION };
     let mut list = std::mem::take(&mut rows.rows);
     for row in &list {
         push(rows, row, row.impulse, velocities, sizes);
@@ -110,7 +148,7 @@ pub fn solve(
         let (mut change, mut sum) = (0.0, 0.0);
         for row in &mut list {
             let u = rows.relative(row, velocities);
-            let next = if friction > 0.0 { coulomb(row, u, friction) } else { signorini(row, u) };
+            let next = if friction > 0.0 { coulomb(row, u, friction) } else { signorini(row, u, relaxation) };
             let delta = [next[0] - row.impulse[0], next[1] - row.impulse[1]];
             if delta != [0.0; 2] {
                 push(rows, row, delta, velocities, sizes);
@@ -130,7 +168,7 @@ pub fn solve(
 }
 
 /// Adds the effect of an impulse to the contact velocities.
-#[inline]
+#[inline(always)]
 fn push(rows: &Rows, row: &Row, impulse: [f64; 2], velocities: &mut [Vec<f64>], sizes: &[usize]) {
     for side in &row.sides[..row.side_count] {
         let size = sizes[side.body as usize];
@@ -148,9 +186,9 @@ fn push(rows: &Rows, row: &Row, impulse: [f64; 2], velocities: &mut [Vec<f64>], 
 }
 
 #[inline]
-fn signorini(row: &Row, u: [f64; 2]) -> [f64; 2] {
+fn signorini(row: &Row, u: [f64; 2], relaxation: f64) -> [f64; 2] {
     let normal = u[0] * row.normal[0] + u[1] * row.normal[1];
-    [(row.impulse[0] - (normal - row.bound) / row.delassus[0]).max(0.0), 0.0]
+    [(row.impulse[0] - relaxation * (normal - row.bound) / row.delassus[0]).max(0.0), 0.0]
 }
 
 /// Exact solution of one contact with friction by enumeration: open, stick, slide either way.

@@ -121,14 +121,14 @@ impl Rows {
     }
 
     /// Signed weights of a side.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn weights(&self, side: &Side) -> &[(u32, f64)] {
         &self.entries[side.entries.0 as usize..side.entries.1 as usize]
     }
 
     /// Relative velocity of a row from the contact velocities of the bodies, wall velocity not subtracted.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn relative(&self, row: &Row, velocities: &[Vec<f64>]) -> [f64; 2] {
         let mut sum = [0.0; 2];
