@@ -394,11 +394,15 @@ fn beyond_reach(candidate: &Candidate, bodies: &[Body]) -> Option<usize> {
     (!both).then_some(other as usize)
 }
 
+/// Halvings a step may begin with.
+const FIRST_HALVINGS: u32 = 2;
+
 /// Halving that a step begins with: one less than the last step ended with. Where contacts form and break, the whole
-/// step would fail again and again.
+/// step would fail again and again. Few at the most: after a much shorter step (the caller's, not a halved one) the
+/// shortest substeps are the hardest, inertia being all there is in their residual.
 fn start_level(world: &World, dt: f64) -> u32 {
     let mut level = 0;
-    while level < world.numerics.halvings
+    while level < FIRST_HALVINGS.min(world.numerics.halvings)
         && world.last_dt > 0.0
         && world.last_dt < 0.3 * dt / f64::from(1_u32 << level)
     {
