@@ -109,6 +109,20 @@ pub trait Lane: Copy {
         value: [Self; 3],
         other: [Self; 3],
     );
+    /// Both records of a pair in one go, lane after lane: adds `force` and `torque_a` to the forces of `a`, subtracts
+    /// `force` from those of `b` and adds to them `torque_a` (`MODE` [`SAME`]) or `torque_b` ([`OTHER`]).
+    ///
+    /// # Safety
+    /// As for [`Lane::scatter_pair`].
+    unsafe fn scatter_contact<const MODE: u8>(
+        of_a: *mut Force,
+        a: *const u32,
+        of_b: *mut Force,
+        b: *const u32,
+        force: [Self; 3],
+        torque_a: [Self; 3],
+        torque_b: [Self; 3],
+    );
 }
 
 /// See [`Lane::scatter_pair`].

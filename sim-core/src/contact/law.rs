@@ -47,6 +47,8 @@ pub trait ContactLaw<S: Space>: Copy + Send + Sync + 'static {
     const NEEDS_SPIN: bool;
     /// Whether there are rolling moments.
     const ROLLS: bool;
+    /// Whether [`ContactLaw::stretch`] leaves the bound of friction to [`ContactLaw::limit`].
+    const BOUNDED: bool;
     /// Slot of the tangential memory.
     const TANGENTIAL_SLOT: usize;
 
@@ -59,10 +61,29 @@ pub trait ContactLaw<S: Space>: Copy + Send + Sync + 'static {
         motion: &PairMotion<S, L>,
         dt: L,
     ) -> Encounter<S, L>;
-    /// Its forces, updating its memory.
+    /// Its forces, updating its memory, without the bound of friction where the law is [`ContactLaw::BOUNDED`]; the mask
+    /// says where [`ContactLaw::limit`] must follow.
     ///
     /// # Safety
     /// `memory` points to [`ContactLaw::SLOTS`] slots of a group at the first lane.
+    unsafe fn stretch<L: Lane>(
+        &self,
+        geometry: &PairGeometry<S, L>,
+        encounter: &Encounter<S, L>,
+        spin_difference: S::Spin<L>,
+        dt: L,
+        memory: *mut f64,
+    ) -> (Response<S, L>, L::Mask);
+    /// Cuts the tangential force of a contact and its memory back to the bound, where it exceeds it.
+    ///
+    /// # Safety
+    /// As for [`ContactLaw::stretch`].
+    unsafe fn limit<L: Lane>(&self, overlap: L, tangential: S::Shear<L>, memory: *mut f64) -> S::Shear<L>;
+    /// Its forces, updating its memory.
+    ///
+    /// # Safety
+    /// As for [`ContactLaw::stretch`].
+    #[inline(always)]
     unsafe fn forces<L: Lane>(
         &self,
         geometry: &PairGeometry<S, L>,
@@ -70,7 +91,16 @@ pub trait ContactLaw<S: Space>: Copy + Send + Sync + 'static {
         spin_difference: S::Spin<L>,
         dt: L,
         memory: *mut f64,
-    ) -> Response<S, L>;
+    ) -> Response<S, L> {
+        // SAFETY: the caller vouches for the slots.
+        unsafe {
+            let (mut response, sliding) = self.stretch(geometry, encounter, spin_difference, dt, memory);
+            if Self::BOUNDED && L::any(sliding) {
+                response.tangential = self.limit(geometry.overlap, response.tangential, memory);
+            }
+            response
+        }
+    }
     /// Both in one.
     ///
     /// # Safety
@@ -113,6 +143,7 @@ where
     const SLOTS: usize = D::SLOTS + T::SLOTS + R::SLOTS;
     const NEEDS_SPIN: bool = T::NEEDS_SPIN || R::ROLLS;
     const ROLLS: bool = R::ROLLS;
+    const BOUNDED: bool = T::BOUNDED;
     const TANGENTIAL_SLOT: usize = D::SLOTS;
 
     fn range(&self) -> f64 {
@@ -149,14 +180,14 @@ where
     }
 
     #[inline(always)]
-    unsafe fn forces<L: Lane>(
+    unsafe fn stretch<L: Lane>(
         &self,
         geometry: &PairGeometry<S, L>,
         encounter: &Encounter<S, L>,
         spin_difference: S::Spin<L>,
         dt: L,
         memory: *mut f64,
-    ) -> Response<S, L> {
+    ) -> (Response<S, L>, L::Mask) {
         let PairGeometry { normal, overlap, root_mass, .. } = *geometry;
         let Encounter { approach, share, ref slide } = *encounter;
         let active = L::splat(0.0).less(share);
@@ -167,14 +198,14 @@ where
         let attraction = self.attraction.force(overlap, share);
         let normal_force = self.damping.repulsion(elastic, viscous).sub(attraction);
 
-        let tangential = if T::NEEDS_SPIN {
+        let (tangential, sliding) = if T::NEEDS_SPIN {
             // SAFETY: see above.
             unsafe {
                 let slide = slide.assume_init_ref();
-                self.tangential.force(normal, slide, elastic, active, dt, memory.add(D::SLOTS * GROUP))
+                self.tangential.stretch(normal, slide, elastic, active, dt, memory.add(D::SLOTS * GROUP))
             }
         } else {
-            S::Shear::zero()
+            (S::Shear::zero(), active)
         };
         let rolling = if R::ROLLS {
             // SAFETY: see above.
@@ -190,7 +221,15 @@ where
         } else {
             S::Spin::zero()
         };
-        Response { normal: normal_force, elastic, attraction, viscous, tangential, rolling }
+        (Response { normal: normal_force, elastic, attraction, viscous, tangential, rolling }, sliding)
+    }
+
+    #[inline(always)]
+    unsafe fn limit<L: Lane>(&self, overlap: L, tangential: S::Shear<L>, memory: *mut f64) -> S::Shear<L> {
+        // SAFETY: the caller vouches for the slots.
+        unsafe {
+            self.tangential.limit(tangential, self.normal.elastic(overlap), memory.add(D::SLOTS * GROUP))
+        }
     }
 
     fn reverses(slot: usize) -> bool {

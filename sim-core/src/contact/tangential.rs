@@ -17,6 +17,8 @@ pub trait Tangential<S: Space>: Copy + Send + Sync + 'static {
     const SLOTS: usize;
     /// Whether spins and torques exist.
     const NEEDS_SPIN: bool;
+    /// Whether [`Tangential::stretch`] leaves the bound to [`Tangential::limit`].
+    const BOUNDED: bool = false;
     /// Whether the memory changes sign when the two bodies swap roles.
     const REVERSES: bool;
     /// Part of the kernel name.
@@ -36,6 +38,33 @@ pub trait Tangential<S: Space>: Copy + Send + Sync + 'static {
         dt: L,
         memory: *mut f64,
     ) -> S::Shear<L>;
+    /// The same without the bound, where the law is [`Tangential::BOUNDED`]; the mask says where the force exceeds it:
+    /// there [`Tangential::limit`] must follow.
+    ///
+    /// # Safety
+    /// As for [`Tangential::force`].
+    #[inline(always)]
+    unsafe fn stretch<L: Lane>(
+        &self,
+        normal: S::Vector<L>,
+        slide: &S::Slide<L>,
+        elastic: L,
+        active: L::Mask,
+        dt: L,
+        memory: *mut f64,
+    ) -> (S::Shear<L>, L::Mask) {
+        // SAFETY: the caller vouches for the slots.
+        (unsafe { self.force(normal, slide, elastic, active, dt, memory) }, active)
+    }
+    /// Cuts a force that came from [`Tangential::stretch`] back to its bound where it exceeds it, and its memory; all
+    /// else stays to the last bit.
+    ///
+    /// # Safety
+    /// As for [`Tangential::force`].
+    #[inline(always)]
+    unsafe fn limit<L: Lane>(&self, force: S::Shear<L>, _elastic: L, _memory: *mut f64) -> S::Shear<L> {
+        force
+    }
     /// k_t, for the time step [k_n].
     fn stiffness(&self) -> f64;
     /// Coulomb bound for an elastic normal force [k_n d]; infinite without a bound, zero without friction.

@@ -8,7 +8,7 @@ use std::marker::PhantomData;
 use std::mem::MaybeUninit;
 
 pub use pair::Evaluated;
-use pair::{Meeting, Moving};
+use pair::{Meeting, Moving, Pressed};
 pub use path::Path;
 
 use crate::boundary::Boundary;
@@ -20,10 +20,10 @@ use crate::state::{Body, Chunk, ContactList, Force, Grains};
 
 /// Everything the force pass of a chunk reads, and where it writes.
 pub struct Pass<'a, S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
-    /// Law of pairs.
-    pub law: &'a C,
+    /// Law of pairs; a copy, so that its numbers may stay in registers while forces are written.
+    pub law: C,
     /// Law of wall contacts.
-    pub wall_law: &'a C,
+    pub wall_law: C,
     /// Sizes and masses.
     pub grains: &'a G,
     /// Nearest images.
@@ -57,7 +57,7 @@ pub fn constants_of<G: Grains>(grains: &G, a: u32, b: u32) -> [f64; 3 * GROUP] {
 
 /// Groups that go through one part of the work before any of them goes on to the next. The chain of dependent
 /// operations from the positions of a group to its forces is several times as long as the reorder buffer of a core;
-/// cut in three through small buffers in the first-level cache, several groups are in flight.
+/// cut in parts through small buffers in the first-level cache, several groups are in flight.
 const BATCH: usize = 16;
 
 /// Where the forces on b of the contacts of a list go.
@@ -150,6 +150,9 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
                 moving.add(k).write(MaybeUninit::new(self.move_on::<L>(meeting, constants)));
                 k += 1;
             }
+            if C::BOUNDED {
+                return self.limited::<L>(indices, memory, rows, targets, first, count, meetings, moving);
+            }
             k = 0;
             while k < count {
                 let a = indices.add((first + k) * 2 * GROUP);
@@ -158,6 +161,65 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
                 let memory = memory.add((first + k) * C::SLOTS * GROUP);
                 let constants = constants::<G>(rows, first + k, 0);
                 let contact = self.respond::<L>(meeting, moving, memory, constants);
+                let target = targets.at.add((first + k) * targets.stride);
+                let own = self.apply::<L>(a, targets.forces, target, &contact);
+                if B::DEFORMS {
+                    virial = [virial[0].add(own[0]), virial[1].add(own[1])];
+                }
+                k += 1;
+            }
+        }
+        virial
+    }
+
+    /// The parts after the second for a law whose bound is a part of its own.
+    ///
+    /// # Safety
+    /// As for `batch`; the first two parts are done.
+    #[inline(always)]
+    #[expect(clippy::too_many_arguments, reason = "the second half of `batch`, with its buffers")]
+    unsafe fn limited<L: Lane>(
+        &self,
+        indices: *const u32,
+        memory: *mut f64,
+        rows: *const f64,
+        targets: Targets,
+        first: usize,
+        count: usize,
+        meetings: *mut MaybeUninit<Meeting<S, L>>,
+        moving: *mut MaybeUninit<Moving<S, L>>,
+    ) -> [L; 2] {
+        let mut virial = [L::splat(0.0); 2];
+        let mut pressed = [const { MaybeUninit::<Pressed<S, L>>::uninit() }; BATCH];
+        // Groups with contacts that slide. Which ones do, nobody can predict; so they are noted without a branch.
+        let mut sliding = [0_usize; BATCH + 1];
+        let mut slides = 0;
+        let (pressed, noted) = (pressed.as_mut_ptr(), sliding.as_mut_ptr());
+        // SAFETY: the caller vouches for lists and buffers; `pressed` is written before it is read.
+        unsafe {
+            let mut k = 0;
+            while k < count {
+                let (meeting, moving) =
+                    ((*meetings.add(k)).assume_init_ref(), (*moving.add(k)).assume_init_ref());
+                let memory = memory.add((first + k) * C::SLOTS * GROUP);
+                let constants = constants::<G>(rows, first + k, 0);
+                let (contact, slide) = self.press::<L>(meeting, moving, memory, constants);
+                pressed.add(k).write(MaybeUninit::new(contact));
+                *noted.add(slides) = k;
+                slides += usize::from(slide);
+                k += 1;
+            }
+            for &k in sliding.get_unchecked(..slides) {
+                let meeting = (*meetings.add(k)).assume_init_ref();
+                let memory = memory.add((first + k) * C::SLOTS * GROUP);
+                self.limit::<L>(meeting, (*pressed.add(k)).assume_init_mut(), memory);
+            }
+            k = 0;
+            while k < count {
+                let a = indices.add((first + k) * 2 * GROUP);
+                let (meeting, pressed) =
+                    ((*meetings.add(k)).assume_init_ref(), (*pressed.add(k)).assume_init_ref());
+                let contact = self.resolve::<L>(meeting, pressed, constants::<G>(rows, first + k, 0));
                 let target = targets.at.add((first + k) * targets.stride);
                 let own = self.apply::<L>(a, targets.forces, target, &contact);
                 if B::DEFORMS {

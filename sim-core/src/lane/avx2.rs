@@ -271,4 +271,30 @@ impl Lane for Avx2 {
             }
         }
     }
+    #[inline(always)]
+    unsafe fn scatter_contact<const MODE: u8>(
+        of_a: *mut Force,
+        a: *const u32,
+        of_b: *mut Force,
+        b: *const u32,
+        force: [Self; 3],
+        torque_a: [Self; 3],
+        torque_b: [Self; 3],
+    ) {
+        let (forces, torques_a) = (Self::rows(force), Self::rows(torque_a));
+        let torques_b = if MODE == OTHER { Self::rows(torque_b) } else { torques_a };
+        // SAFETY: the caller vouches for the indices; a force is two aligned rows of four doubles.
+        unsafe {
+            for lane in 0..4 {
+                let to = of_a.add(*a.add(lane) as usize).cast::<f64>();
+                _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), forces[lane]));
+                let to = to.add(ROW);
+                _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), torques_a[lane]));
+                let to = of_b.add(*b.add(lane) as usize).cast::<f64>();
+                _mm256_store_pd(to, _mm256_sub_pd(_mm256_load_pd(to), forces[lane]));
+                let to = to.add(ROW);
+                _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), torques_b[lane]));
+            }
+        }
+    }
 }

@@ -141,4 +141,20 @@ impl Lane for f64 {
             Self::scatter::<FIELD>(of_b, b, on_b);
         }
     }
+    #[inline(always)]
+    unsafe fn scatter_contact<const MODE: u8>(
+        of_a: *mut Force,
+        a: *const u32,
+        of_b: *mut Force,
+        b: *const u32,
+        force: [Self; 3],
+        torque_a: [Self; 3],
+        torque_b: [Self; 3],
+    ) {
+        // SAFETY: as for `scatter_pair`.
+        unsafe {
+            Self::scatter_pair::<0, OPPOSITE>(of_a, a, of_b, b, force, force);
+            Self::scatter_pair::<1, MODE>(of_a, a, of_b, b, torque_a, torque_b);
+        }
+    }
 }

@@ -18,9 +18,19 @@ pub struct CoulombSpring {
     pub mu: f64,
 }
 
+impl CoulombSpring {
+    /// Where a tangential force exceeds μ f_e.
+    #[inline(always)]
+    fn slides<L: Lane>(&self, force: V3<L>, elastic: L) -> L::Mask {
+        let bound = L::splat(self.mu).mul(elastic);
+        bound.mul(bound).less(force.dot(force))
+    }
+}
+
 impl Tangential<Spatial> for CoulombSpring {
     const SLOTS: usize = 3;
     const NEEDS_SPIN: bool = true;
+    const BOUNDED: bool = true;
     const REVERSES: bool = true;
     const NAME: &'static str = "+coulomb";
 
@@ -35,6 +45,23 @@ impl Tangential<Spatial> for CoulombSpring {
         memory: *mut f64,
     ) -> V3<L> {
         // SAFETY: the caller vouches for the slots.
+        unsafe {
+            let (force, sliding) = self.stretch(normal, slide, elastic, active, dt, memory);
+            if L::any(sliding) { self.limit(force, elastic, memory) } else { force }
+        }
+    }
+
+    #[inline(always)]
+    unsafe fn stretch<L: Lane>(
+        &self,
+        normal: V3<L>,
+        slide: &SpatialSlide<L>,
+        elastic: L,
+        active: L::Mask,
+        dt: L,
+        memory: *mut f64,
+    ) -> (V3<L>, L::Mask) {
+        // SAFETY: the caller vouches for the slots.
         let old: V3<L> = unsafe { V3::load(memory) };
         let turned = twist(old, normal, slide.turn);
         let grown = turned.add_scaled(dt, slide.slip);
@@ -42,22 +69,27 @@ impl Tangential<Spatial> for CoulombSpring {
         let along = grown.dot(normal);
         let half_turn = along.mul(dt).mul(L::splat(0.5));
         let spring = grown.sub_scaled(along, normal).add_scaled(half_turn, slide.normal_rate);
-
-        let force = spring.scale(L::splat(self.kt));
-        let bound = L::splat(self.mu).mul(elastic);
-        let square = force.dot(force);
-        let sliding = bound.mul(bound).less(square);
-        let (spring, force) = if L::any(sliding) {
-            let shrink = L::select(sliding, bound.div(square.sqrt()), L::splat(1.0));
-            (spring.scale(shrink), force.scale(shrink))
-        } else {
-            (spring, force)
-        };
-        let (spring, force) = (spring.keep(active), force.keep(active));
+        // An open contact has no spring, so it cannot slide either.
+        let spring = spring.keep(active);
         // SAFETY: as above.
         unsafe { spring.store(memory) };
-        force
+        let force = spring.scale(L::splat(self.kt));
+        (force, self.slides(force, elastic))
     }
+
+    #[inline(always)]
+    unsafe fn limit<L: Lane>(&self, force: V3<L>, elastic: L, memory: *mut f64) -> V3<L> {
+        let bound = L::splat(self.mu).mul(elastic);
+        let length = force.dot(force).sqrt();
+        let shrink = L::select(self.slides(force, elastic), bound.div(length), L::splat(1.0));
+        // SAFETY: the caller vouches for the slots.
+        unsafe {
+            let spring: V3<L> = V3::load(memory);
+            spring.scale(shrink).store(memory);
+        }
+        force.scale(shrink)
+    }
+
     fn stiffness(&self) -> f64 {
         self.kt
     }

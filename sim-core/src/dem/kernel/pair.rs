@@ -1,5 +1,5 @@
-//! Contacts of pairs in three parts, meant to be done for several groups at a time: where the bodies are, how they
-//! move against each other, what forces follow.
+//! Contacts of pairs in parts, meant to be done for several groups at a time: where the bodies are, how they move against
+//! each other, what forces follow (where friction is bounded: springs, the few contacts that slide, forces).
 
 use std::mem::MaybeUninit;
 
@@ -35,6 +35,15 @@ pub(super) struct Moving<S: Space, L: Lane> {
     share: L,
     /// Where there are spins.
     slide: MaybeUninit<S::Slide<L>>,
+}
+
+/// What the springs of a bounded law say before the bound.
+#[derive(Clone, Copy)]
+pub(super) struct Pressed<S: Space, L: Lane> {
+    normal: L,
+    tangential: S::Shear<L>,
+    /// Where contacts resist rolling.
+    rolling: MaybeUninit<S::Spin<L>>,
 }
 
 /// One contact or group of contacts: geometry and forces.
@@ -204,16 +213,97 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     ) -> Evaluated<S, L> {
         // SAFETY: the caller vouches.
         let (geometry, motion) = unsafe { self.unfold(meeting, constants) };
-        let PairGeometry { normal, overlap, radius_a, radius_b, .. } = geometry;
         let encounter = Encounter { approach: moving.approach, share: moving.share, slide: moving.slide };
-        let zero: S::Spin<L> = S::Spin::zero();
         // SAFETY: the caller vouches for the slots.
         let response: Response<S, L> = unsafe {
             self.law.forces(&geometry, &encounter, motion.spin_difference, L::splat(self.dt), memory)
         };
+        // SAFETY: see above.
+        unsafe { self.act(meeting, response, constants) }
+    }
+
+    /// Third part of a bounded law: springs and dashpots without the bound of friction; whether one of the contacts
+    /// exceeds it, so that [`Pass::limit`] must follow.
+    ///
+    /// # Safety
+    /// As for [`Pass::respond`].
+    #[inline(always)]
+    pub(super) unsafe fn press<L: Lane>(
+        &self,
+        meeting: &Meeting<S, L>,
+        moving: &Moving<S, L>,
+        memory: *mut f64,
+        constants: *const f64,
+    ) -> (Pressed<S, L>, bool) {
+        // SAFETY: the caller vouches.
+        let (geometry, motion) = unsafe { self.unfold(meeting, constants) };
+        let encounter = Encounter { approach: moving.approach, share: moving.share, slide: moving.slide };
+        // SAFETY: the caller vouches for the slots.
+        let (Response { normal, tangential, rolling, .. }, sliding) = unsafe {
+            self.law.stretch(&geometry, &encounter, motion.spin_difference, L::splat(self.dt), memory)
+        };
+        let mut pressed = Pressed { normal, tangential, rolling: MaybeUninit::uninit() };
+        if C::ROLLS {
+            pressed.rolling.write(rolling);
+        }
+        (pressed, L::any(sliding))
+    }
+
+    /// Fourth part, for groups with contacts that slide.
+    ///
+    /// # Safety
+    /// Meeting and pressed came from the parts before; `memory` points to the slots of these contacts.
+    #[inline(always)]
+    pub(super) unsafe fn limit<L: Lane>(
+        &self,
+        meeting: &Meeting<S, L>,
+        pressed: &mut Pressed<S, L>,
+        memory: *mut f64,
+    ) {
+        // SAFETY: the caller vouches.
+        pressed.tangential = unsafe { self.law.limit(meeting.overlap, pressed.tangential, memory) };
+    }
+
+    /// Last part of a bounded law: forces and torques.
+    ///
+    /// # Safety
+    /// Meeting and pressed came from the parts before with these constants.
+    #[inline(always)]
+    pub(super) unsafe fn resolve<L: Lane>(
+        &self,
+        meeting: &Meeting<S, L>,
+        pressed: &Pressed<S, L>,
+        constants: *const f64,
+    ) -> Evaluated<S, L> {
+        let zero = L::splat(0.0);
+        // SAFETY: `press` wrote it where contacts resist rolling; the caller vouches for the rest.
+        unsafe {
+            let rolling = if C::ROLLS { pressed.rolling.assume_init() } else { S::Spin::zero() };
+            let Pressed { normal, tangential, .. } = *pressed;
+            // The parts of the normal force are of no use to a force pass.
+            let response =
+                Response { normal, elastic: zero, attraction: zero, viscous: zero, tangential, rolling };
+            self.act(meeting, response, constants)
+        }
+    }
+
+    /// Forces and torques of a response.
+    ///
+    /// # Safety
+    /// The meeting came from [`Pass::meet`] of this type of pass and these constants.
+    #[inline(always)]
+    unsafe fn act<L: Lane>(
+        &self,
+        meeting: &Meeting<S, L>,
+        response: Response<S, L>,
+        constants: *const f64,
+    ) -> Evaluated<S, L> {
+        let Meeting { normal, overlap, .. } = *meeting;
         let force = S::contact_force(normal, response.normal, response.tangential);
-        let (mut torque_a, mut torque_b) = (zero, zero);
+        let (mut torque_a, mut torque_b) = (S::Spin::zero(), S::Spin::zero());
         if C::NEEDS_SPIN {
+            // SAFETY: the caller vouches for the constants.
+            let [radius_a, radius_b, _] = unsafe { self.grains.pair::<L>(constants) };
             let half = L::splat(0.5);
             let couple = S::couple(normal, response.tangential);
             torque_a = couple.scale(half.neg_mul_add(overlap, radius_a));
@@ -260,13 +350,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         }
         // SAFETY: see above.
         unsafe {
-            L::scatter_pair::<0, OPPOSITE>(self.forces, a, forces_b, b_target, force, force);
-            if C::NEEDS_SPIN {
-                if G::EQUAL && !C::ROLLS {
-                    L::scatter_pair::<1, SAME>(self.forces, a, forces_b, b_target, torque_a, torque_a);
-                } else {
-                    L::scatter_pair::<1, OTHER>(self.forces, a, forces_b, b_target, torque_a, torque_b);
-                }
+            if !C::NEEDS_SPIN {
+                L::scatter_pair::<0, OPPOSITE>(self.forces, a, forces_b, b_target, force, force);
+            } else if G::EQUAL && !C::ROLLS {
+                L::scatter_contact::<SAME>(self.forces, a, forces_b, b_target, force, torque_a, torque_a);
+            } else {
+                L::scatter_contact::<OTHER>(self.forces, a, forces_b, b_target, force, torque_a, torque_b);
             }
         }
         [zero; 2]
