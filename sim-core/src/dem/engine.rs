@@ -145,8 +145,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     /// The force pass over the present state.
     pub(super) fn pass(&self, forces: *mut Force) -> Pass<'_, S, G, B, C> {
         Pass {
-            law: self.law,
-            wall_law: self.wall_law,
+            law: &self.law,
+            wall_law: &self.wall_law,
             grains: &self.grains,
             boundary: &self.boundary,
             walls: self.walls.as_ref(),

@@ -20,10 +20,10 @@ use crate::state::{Body, Chunk, ContactList, Force, Grains};
 
 /// Everything the force pass of a chunk reads, and where it writes.
 pub struct Pass<'a, S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
-    /// Law of pairs; a copy, so that its numbers may stay in registers while forces are written.
-    pub law: C,
+    /// Law of pairs.
+    pub law: &'a C,
     /// Law of wall contacts.
-    pub wall_law: C,
+    pub wall_law: &'a C,
     /// Sizes and masses.
     pub grains: &'a G,
     /// Nearest images.
