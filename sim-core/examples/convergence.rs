@@ -15,22 +15,6 @@ use std::f64::consts::PI;
 use sim_core::dem::{Dynamics, InitialState, Laws, SphereParameters, spheres};
 use sim_core::{KernelChoice, Options};
 
-fn quiet() -> SphereParameters {
-    SphereParameters {
-        pressure: 0.0,
-        adhesion: 0.0,
-        wall_adhesion: 0.0,
-        alpha_n: 0.0,
-        damping_uses_particle_mass: false,
-        clamp_viscous: false,
-        mu: 0.0,
-        mu_wall: 0.0,
-        kt: 1.5,
-        wall_mass: 96.0,
-        moving: [false; 6],
-    }
-}
-
 fn boxed(positions: Vec<[f64; 3]>, velocities: Vec<[f64; 3]>, half: f64) -> InitialState {
     InitialState {
         spins: vec![[0.0; 3]; positions.len()],
@@ -83,7 +67,12 @@ fn collision(fc: f64, dt: f64) -> f64 {
     (0..13)
         .map(|k| {
             let gap = (3.0 + f64::from(k) / 13.0) * dt * v0;
-            let parameters = SphereParameters { alpha_n: alpha, adhesion: fc, wall_adhesion: fc, ..quiet() };
+            let parameters = SphereParameters {
+                alpha_n: alpha,
+                adhesion: fc,
+                wall_adhesion: fc,
+                ..SphereParameters::springs()
+            };
             let initial = boxed(vec![[0.0, 0.2, -8.5 + gap]], vec![[0.0, 0.0, -v0]], 9.0);
             let mut dem = build(&parameters, &initial, dt);
             dem.run(whole(time / dt) + 8).expect("a collision is sane");
@@ -100,7 +89,7 @@ fn chain(dt: f64) -> f64 {
     let rest = |j: u32| (f64::from(j) - 0.5 * f64::from(COUNT - 1)) * (1.0 - fc);
     let positions = (0..COUNT).map(|j| [rest(j) + shape(j), 0.0, 0.0]).collect();
     let initial = boxed(positions, vec![[0.0; 3]; COUNT as usize], 12.0);
-    let mut dem = build(&SphereParameters { adhesion: fc, ..quiet() }, &initial, dt);
+    let mut dem = build(&SphereParameters { adhesion: fc, ..SphereParameters::springs() }, &initial, dt);
     let period = 2.0 * PI / omega;
     let mut worst = 0.0_f64;
     while dem.time() < 2.0 * period {
@@ -134,7 +123,7 @@ fn gas(seed: u64) -> InitialState {
 fn energy(adhesion: f64, dt: f64) -> f64 {
     let mut sum = 0.0;
     for seed in 0..12 {
-        let mut dem = build(&SphereParameters { adhesion, ..quiet() }, &gas(seed), dt);
+        let mut dem = build(&SphereParameters { adhesion, ..SphereParameters::springs() }, &gas(seed), dt);
         let start = dem.view().energies.total();
         for _ in 0..20 {
             dem.run(whole(1.0 / dt)).expect("a gas is sane");
@@ -157,7 +146,8 @@ fn walls(dt: f64) -> f64 {
         gap += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
         rate += h / 6.0 * (l1 + 2.0 * l2 + 2.0 * l3 + l4);
     }
-    let parameters = SphereParameters { pressure: p, wall_mass: mw, moving: [true; 6], ..quiet() };
+    let parameters =
+        SphereParameters { pressure: p, wall_mass: mw, moving: [true; 6], ..SphereParameters::springs() };
     let mut dem = build(&parameters, &boxed(vec![[0.0; 3]], vec![[0.0; 3]], 5.0), dt);
     dem.run(whole(end / dt)).expect("walls alone are sane");
     let now = dem.view().walls;

@@ -64,19 +64,7 @@ fn read(packing: &str) -> Result<InitialState, Box<dyn Error>> {
 
 #[expect(clippy::print_stdout, reason = "an example that prints")]
 fn time(packing: &str, steps: u64, laws: Laws, kernel: KernelChoice) -> Result<(), Box<dyn Error>> {
-    let parameters = SphereParameters {
-        pressure: 0.0,
-        adhesion: 0.0,
-        wall_adhesion: 0.0,
-        alpha_n: 0.25,
-        damping_uses_particle_mass: false,
-        clamp_viscous: false,
-        mu: 0.4,
-        mu_wall: 0.4,
-        kt: 1.5,
-        wall_mass: 96.0,
-        moving: [false; 6],
-    };
+    let parameters = SphereParameters { alpha_n: 0.25, mu: 0.4, mu_wall: 0.4, ..SphereParameters::springs() };
     let initial = read(packing)?;
     let mut dem = spheres(&parameters, &initial, DT, laws, &Options { threads: 1, kernel });
     let run = |dem: &mut Box<dyn sim_core::dem::Dynamics>, steps| dem.run(steps).map_err(|fault| fault.what);

@@ -57,17 +57,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let initial = read(packing)?;
     let n = initial.positions.len() as f64;
     let full = SphereParameters {
-        pressure: 0.0,
         adhesion: 1e-6,
-        wall_adhesion: 0.0,
         alpha_n: 0.25,
-        damping_uses_particle_mass: false,
-        clamp_viscous: false,
         mu: 0.4,
         mu_wall: 0.4,
-        kt: 1.5,
-        wall_mass: 96.0,
-        moving: [false; 6],
+        ..SphereParameters::springs()
     };
     let build =
         |parameters: &SphereParameters, laws| spheres(parameters, &initial, 0.1, laws, &Options::default());

@@ -12,15 +12,12 @@ fn compaction() -> SphereParameters {
     SphereParameters {
         pressure: 1e-3,
         adhesion: 3e-4,
-        wall_adhesion: 0.0,
         alpha_n: 0.25,
-        damping_uses_particle_mass: false,
-        clamp_viscous: false,
         mu: 0.4,
         mu_wall: 0.4,
-        kt: 1.5,
         wall_mass: 20.0,
         moving: [true; 6],
+        ..SphereParameters::springs()
     }
 }
 

@@ -25,25 +25,11 @@ pub trait Tangential<S: Space>: Copy + Send + Sync + 'static {
     const NAME: &'static str;
 
     /// Tangential force on a of a contact with this `normal`, with `elastic` the elastic normal force and `active`
-    /// whether the contact is closed.
+    /// whether the contact is closed. A [`Tangential::BOUNDED`] law leaves its bound out; the mask says where the force
+    /// exceeds it: there [`Tangential::limit`] must follow. The mask of other laws means nothing.
     ///
     /// # Safety
     /// `memory` points to [`Tangential::SLOTS`] slots of a group at the first lane.
-    unsafe fn force<L: Lane>(
-        &self,
-        normal: S::Vector<L>,
-        slide: &S::Slide<L>,
-        elastic: L,
-        active: L::Mask,
-        dt: L,
-        memory: *mut f64,
-    ) -> S::Shear<L>;
-    /// The same without the bound, where the law is [`Tangential::BOUNDED`]; the mask says where the force exceeds it:
-    /// there [`Tangential::limit`] must follow.
-    ///
-    /// # Safety
-    /// As for [`Tangential::force`].
-    #[inline(always)]
     unsafe fn stretch<L: Lane>(
         &self,
         normal: S::Vector<L>,
@@ -52,15 +38,12 @@ pub trait Tangential<S: Space>: Copy + Send + Sync + 'static {
         active: L::Mask,
         dt: L,
         memory: *mut f64,
-    ) -> (S::Shear<L>, L::Mask) {
-        // SAFETY: the caller vouches for the slots.
-        (unsafe { self.force(normal, slide, elastic, active, dt, memory) }, active)
-    }
+    ) -> (S::Shear<L>, L::Mask);
     /// Cuts a force that came from [`Tangential::stretch`] back to its bound where it exceeds it, and its memory; all
     /// else stays to the last bit.
     ///
     /// # Safety
-    /// As for [`Tangential::force`].
+    /// As for [`Tangential::stretch`].
     #[inline(always)]
     unsafe fn limit<L: Lane>(&self, force: S::Shear<L>, _elastic: L, _memory: *mut f64) -> S::Shear<L> {
         force

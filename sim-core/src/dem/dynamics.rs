@@ -89,6 +89,27 @@ pub struct SphereParameters {
     pub moving: [bool; 6],
 }
 
+impl SphereParameters {
+    /// Springs alone: no load, adhesion, damping or friction, walls at rest; k_t = 1.5 k_n and m_w = 96 m as in the
+    /// 2024 study.
+    #[must_use]
+    pub fn springs() -> Self {
+        Self {
+            pressure: 0.0,
+            adhesion: 0.0,
+            wall_adhesion: 0.0,
+            alpha_n: 0.0,
+            damping_uses_particle_mass: false,
+            clamp_viscous: false,
+            mu: 0.0,
+            mu_wall: 0.0,
+            kt: 1.5,
+            wall_mass: 96.0,
+            moving: [false; 6],
+        }
+    }
+}
+
 /// Where a system starts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct InitialState {

@@ -155,17 +155,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             }
             k = 0;
             while k < count {
-                let a = indices.add((first + k) * 2 * GROUP);
                 let (meeting, moving) =
                     ((*meetings.add(k)).assume_init_ref(), (*moving.add(k)).assume_init_ref());
                 let memory = memory.add((first + k) * C::SLOTS * GROUP);
                 let constants = constants::<G>(rows, first + k, 0);
                 let contact = self.respond::<L>(meeting, moving, memory, constants);
-                let target = targets.at.add((first + k) * targets.stride);
-                let own = self.apply::<L>(a, targets.forces, target, &contact);
-                if B::DEFORMS {
-                    virial = [virial[0].add(own[0]), virial[1].add(own[1])];
-                }
+                self.apply_group::<L>(indices, targets, first + k, &contact, &mut virial);
                 k += 1;
             }
         }
@@ -216,19 +211,37 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             }
             k = 0;
             while k < count {
-                let a = indices.add((first + k) * 2 * GROUP);
                 let (meeting, pressed) =
                     ((*meetings.add(k)).assume_init_ref(), (*pressed.add(k)).assume_init_ref());
                 let contact = self.resolve::<L>(meeting, pressed, constants::<G>(rows, first + k, 0));
-                let target = targets.at.add((first + k) * targets.stride);
-                let own = self.apply::<L>(a, targets.forces, target, &contact);
-                if B::DEFORMS {
-                    virial = [virial[0].add(own[0]), virial[1].add(own[1])];
-                }
+                self.apply_group::<L>(indices, targets, first + k, &contact, &mut virial);
                 k += 1;
             }
         }
         virial
+    }
+
+    /// Adds the forces of one group of contacts, and its part of the virial.
+    ///
+    /// # Safety
+    /// As for `batch`.
+    #[inline(always)]
+    unsafe fn apply_group<L: Lane>(
+        &self,
+        indices: *const u32,
+        targets: Targets,
+        group: usize,
+        contact: &Evaluated<S, L>,
+        virial: &mut [L; 2],
+    ) {
+        // SAFETY: the caller vouches for the indices.
+        let own = unsafe {
+            let (a, target) = (indices.add(group * 2 * GROUP), targets.at.add(group * targets.stride));
+            self.apply::<L>(a, targets.forces, target, contact)
+        };
+        if B::DEFORMS {
+            *virial = [virial[0].add(own[0]), virial[1].add(own[1])];
+        }
     }
 
     /// The force pass of one chunk.

@@ -5,19 +5,7 @@ use sim_core::{KernelChoice, Options};
 
 /// Parameters of spheres in a box of fixed walls without load: a place for two-body tests.
 pub fn quiet() -> SphereParameters {
-    SphereParameters {
-        pressure: 0.0,
-        adhesion: 0.0,
-        wall_adhesion: 0.0,
-        alpha_n: 0.0,
-        damping_uses_particle_mass: false,
-        clamp_viscous: false,
-        mu: 0.0,
-        mu_wall: 0.0,
-        kt: 1.5,
-        wall_mass: 96.0,
-        moving: [false; 6],
-    }
+    SphereParameters::springs()
 }
 
 /// Parameters of a compaction: all physics on.

@@ -95,7 +95,6 @@ fn nor_with_splines_and_with_contact_on_a_common_mesh() {
 }
 
 #[test]
-#[ignore = "half a minute; cargo test --release -p sim-core --test plastic -- --ignored splines"]
 fn splines_compact_as_fitted_cells_do() {
     let with = |keys: Value| {
         let mut scene = json!({"n": 6, "phi_i": 0.6, "cells": 8, "strain_end": 0.3});

@@ -1,87 +1,48 @@
-//! What the tolerances of the solvers cost and change: tables for `docs/validation/plastic-discs`.
-
-use std::time::Instant;
+//! The default tolerances of both methods against far tighter ones (tables: example `plastic_tolerance`).
 
 use scene::{Reduced, Scene};
 use serde_json::json;
 use sim_core::mpm::explicit::Explicit;
 use sim_core::mpm::implicit::Implicit;
-use sim_core::mpm::setup::{Scenery, build};
+use sim_core::mpm::setup::build;
+use sim_core::mpm::world::Numerics;
 
-fn scenery(method: &str) -> (Scenery, f64) {
+/// Work of the walls [E d²] on a small packing, and the effort of its contact solver per step.
+fn work(method: &str, numerics: impl FnOnce(&mut Numerics)) -> (f64, f64) {
     let scene = json!({
-        "model": "plastic_discs", "n": 24, "cells": 8, "phi_i": 0.72, "strain_end": 0.22, "method": method,
+        "model": "plastic_discs", "n": 6, "cells": 6, "phi_i": 0.6, "strain_end": 0.3, "method": method,
     });
     let Reduced::PlasticDiscs(scene) = Scene::from_json(&scene).unwrap().reduce() else { unreachable!() };
-    (build(&scene).unwrap(), scene.time_step())
-}
-
-/// Wall work, and bottom-wall stress over the last third, at the end.
-fn result(scenery: &Scenery, impulse_before: f64, time_before: f64) -> (f64, f64) {
-    let world = &scenery.world;
-    let force = (world.wall_impulse[0] - impulse_before) / (world.time - time_before);
-    (world.energies.work, force / scenery.width)
-}
-
-#[test]
-#[ignore = "a table for the documentation, half a minute"]
-fn newtons_residual() {
-    let mut reference = None;
-    println!("residual | Newton/step | sweeps/step | CPU s | work | stress");
-    for residual in [1e-8, 1e-6, 1e-5, 1e-4, 1e-3] {
-        let (mut scenery, dt) = scenery("implicit");
-        scenery.world.numerics.residual = residual;
-        scenery.world.numerics.impulse = (0.1 * residual).min(1e-5);
-        let steps = (0.22 * scenery.height / 0.02 / dt).round() as usize;
-        let mut solver = Implicit::new(&scenery.world);
-        let begun = Instant::now();
-        let mut before = (0.0, 0.0);
-        for step in 0..steps {
-            if step == 2 * steps / 3 {
-                before = (scenery.world.wall_impulse[0], scenery.world.time);
-            }
-            if let Err(failure) = solver.step(&mut scenery.world, dt) {
-                println!("{residual:.0e}: step {step}: {failure}");
-                break;
-            }
+    let mut scenery = build(&scene).unwrap();
+    let world = &mut scenery.world;
+    numerics(&mut world.numerics);
+    let end = scene.strain_end * scenery.height / scene.wall_speed;
+    if method == "implicit" {
+        let mut solver = Implicit::new(world);
+        for _ in 0..(end / scene.time_step()).round() as usize {
+            solver.step(world, scene.time_step()).unwrap();
         }
-        let (work, stress) = result(&scenery, before.0, before.1);
-        let effort = scenery.world.effort;
-        let per_step = |count: u64| count as f64 / effort.substeps as f64;
-        let seconds = begun.elapsed().as_secs_f64();
-        println!(
-            "{residual:.0e} | {:.2} | {:.0} | {seconds:.1} | {work:.6} | {stress:.6} | halved {}",
-            per_step(effort.newton),
-            per_step(effort.sweeps),
-            effort.halved
-        );
-        let exact = *reference.get_or_insert(work);
-        assert!(residual > 1e-4 || (work / exact - 1.0).abs() < 5e-3, "{residual}: {work}, {exact}");
+    } else {
+        let mut solver = Explicit::new(world);
+        while world.time < end {
+            let dt = solver.time_step(world).min(end - world.time);
+            solver.step(world, dt).unwrap();
+        }
     }
+    (world.energies.work, world.effort.sweeps as f64 / world.effort.substeps as f64)
 }
 
+/// 5e-3: no more than the mesh leaves in the work of a disc, 0.3 to 1.2 % at 12 and 16 cells (docs/validation/plastic-discs).
 #[test]
-#[ignore = "a table for the documentation, half a minute"]
-fn contact_sweeps_of_the_explicit_method() {
-    println!("most sweeps | sweeps/step | s | work | stress");
-    for most in [5, 10, 20, 50, 200] {
-        let (mut scenery, _) = scenery("explicit");
-        scenery.world.numerics.explicit_sweeps = most;
-        scenery.world.numerics.explicit_impulse = if most > 100 { 1e-5 } else { 1e-3 };
-        let mut solver = Explicit::new(&scenery.world);
-        let end = 0.22 * scenery.height / 0.02;
-        let begun = Instant::now();
-        let mut before = None;
-        while scenery.world.time < end {
-            let dt = solver.time_step(&scenery.world).min(end - scenery.world.time);
-            if scenery.world.time > 2.0 / 3.0 * end && before.is_none() {
-                before = Some((scenery.world.wall_impulse[0], scenery.world.time));
-            }
-            solver.step(&mut scenery.world, dt).unwrap();
-        }
-        let (impulse, time) = before.unwrap();
-        let (work, stress) = result(&scenery, impulse, time);
-        let sweeps = scenery.world.effort.sweeps as f64 / scenery.world.effort.substeps as f64;
-        println!("{most} | {sweeps:.1} | {:.1} | {work:.6} | {stress:.6}", begun.elapsed().as_secs_f64());
-    }
+fn default_tolerances_cost_less_than_half_a_per_cent_of_work() {
+    let (default, cheap) = work("implicit", |_| {});
+    let (tight, dear) = work("implicit", |numerics| (numerics.residual, numerics.impulse) = (1e-6, 1e-7));
+    assert!(dear > 2.0 * cheap, "{cheap} and {dear} sweeps a step");
+    assert!((default / tight - 1.0).abs() < 5e-3, "{default}, {tight}");
+    let (default, cheap) = work("explicit", |_| {});
+    let (tight, dear) = work("explicit", |numerics| {
+        (numerics.explicit_sweeps, numerics.explicit_impulse) = (200, 1e-5);
+    });
+    assert!(dear > 2.0 * cheap, "{cheap} and {dear} sweeps a step");
+    assert!((default / tight - 1.0).abs() < 5e-3, "{default}, {tight}");
 }

@@ -35,23 +35,6 @@ impl Tangential<Spatial> for CoulombSpring {
     const NAME: &'static str = "+coulomb";
 
     #[inline(always)]
-    unsafe fn force<L: Lane>(
-        &self,
-        normal: V3<L>,
-        slide: &SpatialSlide<L>,
-        elastic: L,
-        active: L::Mask,
-        dt: L,
-        memory: *mut f64,
-    ) -> V3<L> {
-        // SAFETY: the caller vouches for the slots.
-        unsafe {
-            let (force, sliding) = self.stretch(normal, slide, elastic, active, dt, memory);
-            if L::any(sliding) { self.limit(force, elastic, memory) } else { force }
-        }
-    }
-
-    #[inline(always)]
     unsafe fn stretch<L: Lane>(
         &self,
         normal: V3<L>,

@@ -15,16 +15,16 @@ impl<S: Space> Tangential<S> for Frictionless {
     const NAME: &'static str = "";
 
     #[inline(always)]
-    unsafe fn force<L: Lane>(
+    unsafe fn stretch<L: Lane>(
         &self,
         _: S::Vector<L>,
         _: &S::Slide<L>,
         _: L,
-        _: L::Mask,
+        active: L::Mask,
         _: L,
         _: *mut f64,
-    ) -> S::Shear<L> {
-        S::Shear::zero()
+    ) -> (S::Shear<L>, L::Mask) {
+        (S::Shear::zero(), active)
     }
     fn stiffness(&self) -> f64 {
         0.0

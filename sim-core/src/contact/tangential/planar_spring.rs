@@ -25,7 +25,7 @@ impl Tangential<Planar> for PlanarSpring {
     const NAME: &'static str = "+planar_coulomb";
 
     #[inline(always)]
-    unsafe fn force<L: Lane>(
+    unsafe fn stretch<L: Lane>(
         &self,
         _: V2<L>,
         slip: &L,
@@ -33,7 +33,7 @@ impl Tangential<Planar> for PlanarSpring {
         active: L::Mask,
         dt: L,
         memory: *mut f64,
-    ) -> V1<L> {
+    ) -> (V1<L>, L::Mask) {
         // SAFETY: the caller vouches for the slot.
         let old = unsafe { L::load(memory) };
         let grown = slip.mul_add(L::splat(self.kt).mul(dt), old);
@@ -41,7 +41,7 @@ impl Tangential<Planar> for PlanarSpring {
         let force = grown.min(bound).max(L::splat(0.0).sub(bound)).keep(active);
         // SAFETY: as above.
         unsafe { force.store(memory) };
-        V1([force])
+        (V1([force]), active)
     }
     fn stiffness(&self) -> f64 {
         self.kt
@@ -55,7 +55,27 @@ impl Tangential<Planar> for PlanarSpring {
 mod tests {
     use super::super::CoulombSpring;
     use super::*;
-    use crate::space::{Spatial, SpatialSlide, V3};
+    use crate::space::{Space, Spatial, SpatialSlide, V3};
+
+    /// Force on a closed contact, bound and all; one that is open has no elastic force.
+    ///
+    /// # Safety
+    /// There is room for every slot.
+    unsafe fn force<S: Space, T: Tangential<S>>(
+        law: &T,
+        normal: S::Vector<f64>,
+        slide: &S::Slide<f64>,
+        elastic: f64,
+        dt: f64,
+        memory: &mut [f64],
+    ) -> S::Shear<f64> {
+        let memory = memory.as_mut_ptr();
+        // SAFETY: the caller vouches.
+        unsafe {
+            let (force, sliding) = law.stretch::<f64>(normal, slide, elastic, elastic > 0.0, dt, memory);
+            if T::BOUNDED && sliding { law.limit(force, elastic, memory) } else { force }
+        }
+    }
 
     /// Force of both laws on a contact whose normal turns steadily by 2 rad while it slips to and fro.
     fn shear(mu: f64, steps: u32) -> [[f64; 2]; 2] {
@@ -78,24 +98,8 @@ mod tests {
             let slip = rate * (v * x - u * y);
             // SAFETY: there is room for every slot.
             let (a, b) = unsafe {
-                let a = <PlanarSpring as Tangential<Planar>>::force::<f64>(
-                    &plane,
-                    V2([x, y]),
-                    &slip,
-                    0.05,
-                    true,
-                    dt,
-                    one.as_mut_ptr(),
-                );
-                let b = <CoulombSpring as Tangential<Spatial>>::force::<f64>(
-                    &space,
-                    V3([x, y, 0.0]),
-                    &slide,
-                    0.05,
-                    true,
-                    dt,
-                    three.as_mut_ptr(),
-                );
+                let a = force::<Planar, _>(&plane, V2([x, y]), &slip, 0.05, dt, &mut one);
+                let b = force::<Spatial, _>(&space, V3([x, y, 0.0]), &slide, 0.05, dt, &mut three);
                 (a.0[0], b.0)
             };
             last = [[-a * y, a * x], [b[0], b[1]]];
@@ -120,12 +124,12 @@ mod tests {
         let law = PlanarSpring { kt: 1.0, mu: 0.5 };
         let mut memory = [0.0];
         // SAFETY: one slot.
-        let mut force = |elastic: f64| unsafe {
-            law.force::<f64>(V2([1.0, 0.0]), &1.0, elastic, elastic > 0.0, 0.1, memory.as_mut_ptr()).0[0]
+        let mut at = |elastic: f64| unsafe {
+            force::<Planar, _>(&law, V2([1.0, 0.0]), &1.0, elastic, 0.1, &mut memory).0[0]
         };
-        assert_eq!(force(1.0), 0.1);
-        assert_eq!(force(0.1), 0.05);
-        assert_eq!(force(0.0), 0.0);
-        assert_eq!(force(1.0), 0.1);
+        assert_eq!(at(1.0), 0.1);
+        assert_eq!(at(0.1), 0.05);
+        assert_eq!(at(0.0), 0.0);
+        assert_eq!(at(1.0), 0.1);
     }
 }
