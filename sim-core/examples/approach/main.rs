@@ -4,16 +4,18 @@
 //!
 //! Runs every point of a sweep by its own stop rule and appends to `OUT.csv` the record on the way, whenever the number
 //! of steps has grown by the given factor, and at the end (`mark` = `way`, `end`, or `cut` where a point has used its CPU
-//! time, `failed` with the reason); to `OUT.series.csv` its samples, from which what any stop rule would have done
+//! time, `failed` with the reason); with what still moves in it; to `OUT.series.csv` its samples, from which what any stop rule would have done
 //! can be read off. A point that has its last row is skipped, so the command can be
 //! repeated. `cpu_s` counts the steps alone, on all threads of the process; what is looked at beside them is left out.
 #![expect(clippy::print_stdout, reason = "an example for the command line")]
+
+mod motion;
 
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use record::{Cell, Row, Table};
+use record::{Cell, Outcome, Table};
 use scene::Scene;
 use scene::sweep::Sweep;
 use sim_core::{KernelChoice, Options, SimError, compile};
@@ -144,7 +146,7 @@ fn after(step: u64, growth: f64) -> u64 {
 fn run(
     scene: &Scene,
     limits: &Limits,
-    row: &mut dyn FnMut(&str, f64, &Row),
+    row: &mut dyn FnMut(&str, f64, &Outcome),
 ) -> Result<(String, Table), SimError> {
     let mut simulation = compile(&scene.reduce(), &limits.options)?;
     let (mut cpu, mut next) = (0.0, after(0, limits.growth));
@@ -158,11 +160,11 @@ fn run(
         if progress.finished || cut {
             let outcome = simulation.outcome()?;
             let mark = if progress.finished { "end" } else { "cut" };
-            row(mark, cpu, &outcome.record);
+            row(mark, cpu, &outcome);
             return Ok((mark.to_owned(), outcome.series));
         }
         if progress.steps >= next {
-            row("way", cpu, &simulation.outcome()?.record);
+            row("way", cpu, &simulation.outcome()?);
             next = after(progress.steps, limits.growth);
         }
     }
@@ -230,9 +232,10 @@ fn main() {
     let mut rows = Sheet::open(
         &path,
         &format!(
-            "scene,mark,cpu_s,{},{}",
+            "scene,mark,cpu_s,{},{},{}",
             KEYS.map(|name| if name == "dt" { "given_dt" } else { name }).join(","),
-            COLUMNS.join(",")
+            COLUMNS.join(","),
+            motion::COLUMNS.join(",")
         ),
     );
     let mut samples = Sheet::open(
@@ -246,10 +249,11 @@ fn main() {
         }
         let keys: Vec<String> = KEYS.iter().map(|name| key(&point.scene, name)).collect();
         let mut held: Vec<Vec<String>> = Vec::new();
-        let found = run(&point.scene, &limits, &mut |mark, cpu, record| {
+        let found = run(&point.scene, &limits, &mut |mark, cpu, outcome| {
             let mut cells = vec![label.clone(), mark.to_owned(), number(cpu)];
             cells.extend(keys.iter().cloned());
-            cells.extend(COLUMNS.iter().map(|name| cell(record.get(name))));
+            cells.extend(COLUMNS.iter().map(|name| cell(outcome.record.get(name))));
+            cells.extend(motion::motion(&outcome.packing).map(number));
             held.push(cells);
         });
         // all rows of a point at once, so that an interrupted one leaves none
@@ -262,7 +266,7 @@ fn main() {
                 let mut cells = vec![label.clone(), "failed".to_owned(), String::new()];
                 cells.extend(keys.iter().cloned());
                 cells.push(error.to_string().replace(',', ";"));
-                cells.extend(std::iter::repeat_n(String::new(), COLUMNS.len() - 1));
+                cells.extend(std::iter::repeat_n(String::new(), COLUMNS.len() + motion::COLUMNS.len() - 1));
                 held.push(cells);
                 println!("{} failed: {error}", point.index);
             }
