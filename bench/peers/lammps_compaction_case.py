@@ -1,10 +1,11 @@
 """Compacts loose spheres in LAMMPS between six walls under constant pressure, as `peer_compaction run` does in ours.
 
-usage: lammps_compaction_case.py START.csv STEPS EVERY
+usage: lammps_compaction_case.py START.csv STEPS EVERY DT MU
 
 Pair and wall laws as in lammps_case.py. LAMMPS moves plane regions along given paths, so the equation of motion of the
 walls is integrated here, as in ours: m_w dv/dt = p S - F, S the product of the other two gaps, F the normal force of the
-spheres, worked out from positions and velocities (spring and dashpot with the mass of the sphere); leapfrog.
+spheres, worked out from positions and velocities (spring and dashpot with the mass of the sphere); leapfrog. The Coulomb
+limit of LAMMPS is that of the whole normal force, dashpot included, where ours is that of the spring.
 Prints one JSON line of rows as `peer_compaction run`.
 """
 import json
@@ -14,10 +15,11 @@ import sys
 import tempfile
 
 import numpy as np
-from common import ALPHA_N, DT, KT_OVER_KN, MU, SKIN
+from common import ALPHA_N, KT_OVER_KN, SKIN
 from lammps import lammps
 
 start, steps, every = sys.argv[1], int(sys.argv[2]), int(sys.argv[3])
+DT, MU = float(sys.argv[4]), float(sys.argv[5])
 with open(start) as file:
     pressure, wall_mass, *faces = [float(v) for v in file.readline().lstrip("# ").split()]
     rows = np.loadtxt(file, delimiter=",", ndmin=2)

@@ -2,8 +2,8 @@
 //!
 //! `peer_compaction start SCENE.json SEED START.csv` writes the initial state of a cohesionless scene: pressure, wall
 //! mass, walls, then x, y, z, vx, vy, vz of every particle (units d, m, k_n).
-//! `peer_compaction run START.csv STEPS EVERY` compacts it between six walls under constant pressure and prints one JSON
-//! line: step, void ratio, contacts per particle, contacts with walls, kinetic energy per particle, every EVERY steps.
+//! `peer_compaction run START.csv STEPS EVERY DT MU` compacts it between six walls under constant pressure, with time step DT [τ]
+//! and friction MU, and prints one JSON line: step, void ratio, contacts per particle, contacts with walls, kinetic energy per particle, every EVERY steps.
 
 use std::error::Error;
 use std::f64::consts::PI;
@@ -12,9 +12,6 @@ use std::fmt::Write as _;
 use sim_core::Options;
 use sim_core::bench::Bench;
 use sim_core::dem::{Dynamics, InitialState, Laws, SphereParameters, View, spheres};
-
-/// Time step [τ], as in `bench/peers/common.py`.
-const DT: f64 = 0.1;
 
 fn start(scene: &str, seed: &str, path: &str) -> Result<(), Box<dyn Error>> {
     let mut keys: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(scene)?)?;
@@ -39,7 +36,7 @@ fn start(scene: &str, seed: &str, path: &str) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn read(path: &str) -> Result<(SphereParameters, InitialState), Box<dyn Error>> {
+fn read(path: &str, mu: f64) -> Result<(SphereParameters, InitialState), Box<dyn Error>> {
     let text = std::fs::read_to_string(path)?;
     let mut lines = text.lines();
     let numbers = |line: &str, by: char| {
@@ -67,8 +64,8 @@ fn read(path: &str) -> Result<(SphereParameters, InitialState), Box<dyn Error>> 
         alpha_n: 0.25,
         damping_uses_particle_mass: false,
         clamp_viscous: false,
-        mu: 0.4,
-        mu_wall: 0.4,
+        mu,
+        mu_wall: mu,
         kt: 1.5,
         wall_mass: *wall_mass,
         moving: [true; 6],
@@ -86,9 +83,9 @@ fn row(view: &View) -> [f64; 5] {
 }
 
 #[expect(clippy::print_stdout, reason = "an example that prints")]
-fn run(path: &str, steps: u64, every: u64) -> Result<(), Box<dyn Error>> {
-    let (parameters, initial) = read(path)?;
-    let mut dem: Box<dyn Dynamics> = spheres(&parameters, &initial, DT, Laws::Needed, &Options::default());
+fn run(path: &str, steps: u64, every: u64, dt: f64, mu: f64) -> Result<(), Box<dyn Error>> {
+    let (parameters, initial) = read(path, mu)?;
+    let mut dem: Box<dyn Dynamics> = spheres(&parameters, &initial, dt, Laws::Needed, &Options::default());
     let mut rows = vec![row(&dem.view())];
     while dem.steps() < steps {
         dem.run(every.min(steps - dem.steps())).map_err(|fault| fault.what)?;
@@ -103,7 +100,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let words: Vec<&str> = arguments.iter().map(String::as_str).collect();
     match words.as_slice() {
         ["start", scene, seed, path] => start(scene, seed, path),
-        ["run", path, steps, every] => run(path, steps.parse()?, every.parse()?),
-        _ => Err("usage: peer_compaction start SCENE.json SEED START.csv | run START.csv STEPS EVERY".into()),
+        ["run", path, steps, every, dt, mu] => {
+            run(path, steps.parse()?, every.parse()?, dt.parse()?, mu.parse()?)
+        }
+        _ => Err("usage: peer_compaction start SCENE.json SEED START.csv | run START.csv STEPS EVERY DT MU".into()),
     }
 }
