@@ -91,7 +91,10 @@ fn run(path: &str, steps: u64, every: u64, dt: f64, mu: f64) -> Result<(), Box<d
         dem.run(every.min(steps - dem.steps())).map_err(|fault| fault.what)?;
         rows.push(row(&dem.view()));
     }
-    println!("{}", serde_json::json!({"rows": rows, "version": format!("Tamp {}", env!("CARGO_PKG_VERSION"))}));
+    println!(
+        "{}",
+        serde_json::json!({"rows": rows, "version": format!("Tamp {}", env!("CARGO_PKG_VERSION"))})
+    );
     Ok(())
 }
 
@@ -103,6 +106,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         ["run", path, steps, every, dt, mu] => {
             run(path, steps.parse()?, every.parse()?, dt.parse()?, mu.parse()?)
         }
-        _ => Err("usage: peer_compaction start SCENE.json SEED START.csv | run START.csv STEPS EVERY DT MU".into()),
+        _ => {
+            Err("usage: peer_compaction start SCENE.json SEED START.csv | run START.csv STEPS EVERY DT MU"
+                .into())
+        }
     }
 }

@@ -4,7 +4,16 @@ use record::{Packing, Table};
 
 /// Columns of [`motion`], all over the elastic energy.
 pub const COLUMNS: [&str; 10] = [
-    "ke_0", "ke_1", "ke_2", "ke_3", "ke_4", "ke_4_spin", "ke_inner", "ke_normal", "ke_shear", "ke_normal_held",
+    "ke_0",
+    "ke_1",
+    "ke_2",
+    "ke_3",
+    "ke_4",
+    "ke_4_spin",
+    "ke_inner",
+    "ke_normal",
+    "ke_shear",
+    "ke_normal_held",
 ];
 
 /// Contacts from which on a particle counts as held, as in the stop rule.
