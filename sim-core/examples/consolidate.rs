@@ -1,7 +1,9 @@
-//! Runs a scene of cohesive discs from standard input; states as JSON lines on standard output.
+//! Runs a scene of cohesive discs from standard input; the scene and its states as JSON lines on standard output.
 //!
 //! `consolidate [STEPS [CHECKPOINT]]`: at most so many steps; from the checkpoint where there is one, else from the
 //! start and then written there. For timings of one state: write it once, then go on from it as often as needed.
+//! With `rest` for STEPS it stops just before the first equilibrium state: one aggregation then serves scenes that
+//! differ in what comes after it (`assembly_cell_mass`, `p0`, `ia`, `path`).
 
 use std::io::{Read, Write};
 use std::time::Instant;
@@ -16,8 +18,11 @@ fn main() {
     else {
         panic!("a scene of cohesive discs");
     };
-    let limit: u64 =
-        std::env::args().nth(1).map_or(u64::MAX, |word| word.parse().expect("a number of steps"));
+    let until_rest = std::env::args().nth(1).is_some_and(|word| word == "rest");
+    let limit: u64 = match std::env::args().nth(1) {
+        Some(word) if !until_rest => word.parse().expect("a number of steps"),
+        _ => u64::MAX,
+    };
     let kept = std::env::args().nth(2);
     let known_state = kept.as_ref().and_then(|path| std::fs::read(path).ok());
     let options = Options::default();
@@ -29,8 +34,15 @@ fn main() {
     let before = run.progress().steps;
     let started = Instant::now();
     let mut out = std::io::stdout();
+    let scene: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    writeln!(out, "{{\"scene\":{scene},\"reduced\":{}}}", serde_json::to_string(&reduced).expect("JSON"))
+        .expect("standard output");
     let mut known = run.state_rows().len();
+    let mut before_rest = Vec::new();
     loop {
+        if until_rest && known == 0 {
+            before_rest = run.save();
+        }
         let progress = run.advance(2500).expect("a stable run");
         let outcome = run.state_rows();
         while known < outcome.len() {
@@ -46,7 +58,7 @@ fn main() {
             known += 1;
         }
         let steps = progress.steps - before;
-        if progress.finished || steps >= limit {
+        if progress.finished || steps >= limit || (until_rest && known > 0) {
             let wall = started.elapsed().as_secs_f64();
             let per = wall * 1e9 / (steps as f64 * progress.particles as f64);
             let counters = run.counters();
@@ -64,7 +76,8 @@ fn main() {
             )
             .expect("standard output");
             if let (Some(path), None) = (&kept, &known_state) {
-                std::fs::write(path, run.save()).expect("a writable checkpoint");
+                let state = if until_rest { before_rest } else { run.save() };
+                std::fs::write(path, state).expect("a writable checkpoint");
             }
             break;
         }

@@ -18,7 +18,7 @@ pub enum Assembly {
     Type1,
     /// Agitated discs aggregate in a fixed cell until one cluster holds all, equilibrium at P = 0, then pressure.
     Type2,
-    /// F0 = 0: compressed from rest; pressures are P/K_N.
+    /// F0 = 0: a granular gas (agitated discs) compressed from the start; pressures are P/K_N.
     Cohesionless,
 }
 
@@ -60,8 +60,9 @@ pub struct Discs {
     pub size_ratio: f64,
     /// Solid fraction of the fluid Φ_I [1].
     pub phi_i: f64,
-    /// Agitation V0/V* of type 2 [1].
-    pub v0: f64,
+    /// Agitation of type 2, V0/V*, and of the cohesionless gas, V0/√(a P/m) [1]; `None`: 9.5, and the speed at which
+    /// the pressure of the gas is the first pressure.
+    pub v0: Option<f64>,
     /// First pressure, P* (P/K_N without cohesion) [1]; `None`: 0.01 (1e-5).
     pub p0: Option<f64>,
     /// The path after it; `None`: to 13.33 (1.333e-3) with 8 steps per decade and back with 2.
@@ -70,7 +71,7 @@ pub struct Discs {
     pub ia: f64,
     /// Mass M of the cell coordinate along the path [m].
     pub cell_mass: f64,
-    /// M while the first pressure is applied [m]; `None`: the mass of all discs for type 1, else `cell_mass`.
+    /// M while the first pressure is applied [m]; `None`: `cell_mass` for type 2, else the mass of all discs.
     pub assembly_cell_mass: Option<f64>,
     /// Factor on the paper's four equilibrium tolerances [1].
     pub tolerance: f64,
@@ -110,7 +111,7 @@ pub struct ReducedDiscs {
     pub size_ratio: f64,
     /// Solid fraction of the fluid Φ_I [1].
     pub phi_i: f64,
-    /// Agitation V0/V* [1]; 0 unless type 2.
+    /// Agitation: V0/V* of type 2, V0/√(a P/m) without cohesion [1]; 0 for type 1.
     pub v0: f64,
     /// First pressure, P* (P/K_N without cohesion) [1].
     pub p0: f64,

@@ -30,7 +30,7 @@ pub fn parameters(scene: &ReducedDiscs) -> DiscParameters {
     }
 }
 
-/// The hard-disc fluid of a scene, with velocities for type 2.
+/// The hard-disc fluid of a scene; discs of type 1 are at rest.
 ///
 /// # Errors
 /// [`SimError::Scene`] when the fluid cannot be made or is too small for its cell.
@@ -52,13 +52,14 @@ pub fn initial_state(scene: &ReducedDiscs) -> Result<InitialDiscs, SimError> {
     let mut random = Pcg64::new(u128::from(scene.seed), POSITIONS);
     let fluid = hard_disc_fluid(&recipe, &mut random)
         .map_err(|error| refuse("phi_i", error.to_string(), "lower phi_i"))?;
-    let velocities = if scene.assembly == Assembly::Type2 {
+    let speed = match scene.assembly {
+        Assembly::Type1 => 0.0,
         // V* = √(F0 D0/m).
-        let speed = scene.v0 * libm::sqrt(scene.f0 * scene.d0);
-        maxwell_velocities(&fluid.radii, speed, &mut Pcg64::new(u128::from(scene.seed), VELOCITIES))
-    } else {
-        vec![[0.0; 2]; discs]
+        Assembly::Type2 => scene.v0 * libm::sqrt(scene.f0 * scene.d0),
+        Assembly::Cohesionless => scene.v0 * libm::sqrt(Scales::of(scene, scene.p0).pressure),
     };
+    let velocities =
+        maxwell_velocities(&fluid.radii, speed, &mut Pcg64::new(u128::from(scene.seed), VELOCITIES));
     let control = match scene.assembly {
         Assembly::Type2 => CellControl::Fixed,
         Assembly::Type1 | Assembly::Cohesionless => {

@@ -16,7 +16,10 @@ const ASSEMBLIES: &[Word] = &[
         meaning: "agitated discs aggregate in a fixed cell until one cluster holds all, equilibrium at P = 0, then \
                   pressure",
     },
-    Word { name: "cohesionless", meaning: "F0 = 0, compressed from rest; pressures are P/K_N" },
+    Word {
+        name: "cohesionless",
+        meaning: "F0 = 0, a gas of agitated discs compressed from the start; pressures are P/K_N",
+    },
 ];
 
 const LEG: &[Key] = &[
@@ -139,10 +142,10 @@ pub(super) const KEYS: &[Key] = &[
     Key {
         name: "v0",
         unit: "1",
-        domain: Domain::Real(Bound::Including(1e-3), Bound::Including(1e4)),
-        absent: Absent::Default("9.5"),
-        meaning: "agitation V0/V* of type 2, V0 the root mean square speed and V* = √(F0 D0/m)",
-        source: "2008, (3)",
+        domain: Domain::Auto(&Domain::Real(Bound::Including(0.0), Bound::Including(1e4))),
+        absent: Absent::Default("\"auto\""),
+        meaning: "agitation, V0 the root mean square speed: V0/V* of type 2 with V* = √(F0 D0/m), V0/√(a P/m) without cohesion; \"auto\": 9.5, and the gas whose pressure is P; no effect in type 1",
+        source: "2008, (3), sections II C and III A",
     },
     Key {
         name: "p0",
@@ -181,7 +184,7 @@ pub(super) const KEYS: &[Key] = &[
         unit: "m",
         domain: Domain::Auto(&Domain::Real(Bound::Including(1.0), Bound::Including(1e9))),
         absent: Absent::Default("\"auto\""),
-        meaning: "M while the first pressure is applied; \"auto\": the mass of all discs for type 1, else `cell_mass`",
+        meaning: "M while the first pressure is applied; \"auto\": `cell_mass` for type 2, else the mass of all discs",
         source: OURS,
     },
     Key {
@@ -222,8 +225,20 @@ pub(super) const KEYS: &[Key] = &[
 pub(super) fn conflicts(scene: &Discs) -> Vec<Problem> {
     /// Largest a P/K_N: overlaps beyond 5 % of a diameter.
     const LARGEST_PRESSURE: f64 = 0.05;
+    /// Smallest agitation of type 2 [V*].
+    const SLOWEST: f64 = 1e-3;
 
     let mut problems = Vec::new();
+    if let (Assembly::Type2, Some(speed)) = (scene.assembly, scene.v0)
+        && speed < SLOWEST
+    {
+        problems.push(Problem::new(
+            "v0".to_owned(),
+            &Value::from(speed),
+            format!("discs of type 2 slower than {SLOWEST} V* never meet"),
+            "raise v0",
+        ));
+    }
     let in_stiffness = if scene.assembly == Assembly::Cohesionless { 1.0 } else { 1.0 / scene.kappa };
     let mut refuse = |field: String, pressure: f64| {
         let reduced = pressure * in_stiffness;

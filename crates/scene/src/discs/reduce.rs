@@ -10,6 +10,9 @@ use crate::{Model, Problem, Quantity, round12};
 /// Time step without other word: stable and accurate; above 0.15 runs fail silently [√(m/K_N)].
 const STEP: f64 = 0.1;
 
+/// V0/V* of type 2 without other word (section II C).
+const AGITATION: f64 = 9.5;
+
 impl Description for Discs {
     type Reduced = ReducedDiscs;
     const MODEL: Model = Model::CohesiveDiscs;
@@ -39,7 +42,11 @@ impl Description for Discs {
             en: round12(self.en),
             size_ratio: round12(self.size_ratio),
             phi_i: round12(self.phi_i),
-            v0: with(self.assembly == Assembly::Type2, self.v0),
+            v0: match self.assembly {
+                Assembly::Type1 => 0.0,
+                Assembly::Type2 => round12(self.v0.unwrap_or(AGITATION)),
+                Assembly::Cohesionless => round12(self.v0.unwrap_or_else(|| self.gas_speed())),
+            },
             p0: round12(self.first_pressure()),
             path: legs
                 .iter()
@@ -49,8 +56,8 @@ impl Description for Discs {
             cell_mass: round12(self.cell_mass),
             assembly_cell_mass: match (self.assembly_cell_mass, self.assembly) {
                 (Some(mass), _) => Some(round12(mass)),
-                (None, Assembly::Type1) => None,
-                (None, _) => Some(round12(self.cell_mass)),
+                (None, Assembly::Type2) => Some(round12(self.cell_mass)),
+                (None, Assembly::Type1 | Assembly::Cohesionless) => None,
             },
             tolerance: round12(self.tolerance),
             final_damping: round12(self.final_damping),
@@ -78,6 +85,17 @@ impl Discs {
     pub fn rolling_stiffness(&self) -> f64 {
         let length = if self.mu > 0.0 { self.mu_r / self.mu } else { 0.0 };
         self.kr.unwrap_or(length * length)
+    }
+
+    /// Root mean square speed at which a gas of hard discs has the pressure P, every disc with the same mean energy E
+    /// [√(a P/m)]: P = n E Z with n = 4Φ/(π⟨d²⟩) and scaled-particle theory's Z = 1/(1−Φ) + Φ⟨d⟩²/(⟨d²⟩(1−Φ)²)
+    /// (Helfand, Frisch and Lebowitz 1961), V0² = 2E⟨1/m⟩, and for diameters uniform in [q a, a] ⟨1/d²⟩ = 1/(q a²).
+    fn gas_speed(&self) -> f64 {
+        let (q, phi) = (self.size_ratio, self.phi_i);
+        let (mean, square) = (0.5 * (1.0 + q), (1.0 + q + q * q) / 3.0);
+        let density = 4.0 * phi / (core::f64::consts::PI * square);
+        let compressibility = 1.0 / (1.0 - phi) + phi * mean * mean / (square * (1.0 - phi) * (1.0 - phi));
+        libm::sqrt(2.0 / (q * density * compressibility))
     }
 
     /// 0.1 √(m/K_N), or less where discs roll faster than that: the smallest one, of moment of inertia (d/a)⁴ m a²/8,
@@ -122,10 +140,26 @@ mod tests {
     #[test]
     fn keys_without_effect_do_not_make_another_run() {
         // Without cohesion κ and D0 mean nothing, without rolling resistance K_R, without friction K_T.
-        let one = reduced(&json!({"assembly": "cohesionless", "kappa": 1e4, "d0": 1e-2, "v0": 3}));
+        let one = reduced(&json!({"assembly": "cohesionless", "kappa": 1e4, "d0": 1e-2}));
         assert_eq!(one, reduced(&json!({"assembly": "cohesionless"})));
+        // Type 1 starts at rest.
+        assert_eq!(reduced(&json!({"assembly": "type1", "v0": 3})), reduced(&json!({"assembly": "type1"})));
         assert_eq!(reduced(&json!({"mu_r": 0, "kr": 3})), reduced(&json!({"mu_r": 0})));
         assert_eq!(reduced(&json!({"mu": 0, "kt_over_kn": 0.5})), reduced(&json!({"mu": 0})));
+    }
+
+    #[test]
+    fn the_gas_has_the_pressure_that_compresses_it() {
+        let gas = |phi_i: f64, size_ratio: f64| {
+            reduced(&json!({"assembly": "cohesionless", "phi_i": phi_i, "size_ratio": size_ratio})).v0
+        };
+        // A thin gas of equal discs is ideal: P = n m V0²/2 with n = 4Φ/(π a²).
+        let thin = gas(0.01, 1.0);
+        let ideal = 2.0 / (0.04 / core::f64::consts::PI);
+        assert!((thin * thin / ideal - 1.0 / (1.0 / 0.99 + 0.01 / 0.9801)).abs() < 1e-11);
+        assert!((gas(0.36, 0.5) - 1.453).abs() < 1e-3, "{}", gas(0.36, 0.5));
+        assert_eq!(reduced(&json!({"assembly": "cohesionless", "v0": 0})).v0, 0.0);
+        assert_eq!(reduced(&json!({"assembly": "cohesionless"})).assembly_cell_mass, None);
     }
 
     #[test]
