@@ -1,11 +1,13 @@
-"""Collects the states of finished sweeps of cohesive discs from a coordinator.
+"""Collects the states of finished sweeps of cohesive discs from coordinators, and of runs of `consolidate`.
 
-usage: collect.py SERVER NAME...        (for example collect.py http://127.0.0.1:8300 consolidation-2008)
+usage: collect.py SERVER NAME... [SERVER NAME...] [FILE.jsonl...]
+       (for example collect.py http://127.0.0.1:8300 consolidation-2008)
 
 Writes beside this file
   states.csv   one row per equilibrium state: scene, observables, residuals
   forces.csv   P(F_N) of the states at P* = 0.01, 0.1, 1 and 13.3 on loading, mean over samples
   scattering.csv   I(k) of type 2 at P* = 0 and 0.01, every sample
+  fits.json    parameters of eq. (9) from the endpoint /consolidation
 Only the standard library is needed.
 """
 import collections
@@ -35,14 +37,38 @@ def short(value):
     return f"{value:.8g}" if isinstance(value, float) else "" if value is None else str(value)
 
 
-server, names = sys.argv[1].rstrip("/") + "/v1", set(sys.argv[2:])
-sweeps = [s for s in json.loads(get(f"{server}/sweeps"))["items"] if s["name"] in names]
-states, jobs = {}, {}
-for sweep in sweeps:
-    for line in get(f"{server}/sweeps/{sweep['id']}/states?format=ndjson").splitlines():
-        row = json.loads(line)
-        states[row["scene_key"], row["state"]] = row
-        jobs[row["scene_key"]] = row["job"]
+def fitted(name, answer):
+    """Parameters of (9) of the curves of type 2."""
+    for curve in answer["curves"]:
+        fit = curve["fit"].get("value", curve["fit"])
+        if curve["assembly"] == "type2" and "lambda" in fit:
+            parameters = {key: [fit[key]["value"], fit[key]["se"]]
+                          for key in ("phi_0", "lambda", "phi_max", "alpha", "p_star_1")}
+            about = {key: fit[key] for key in ("p_star_0", "straight", "method", "errors")}
+            yield {"sweep": name, "mu_r": curve["mu_r"], "samples": curve["samples"],
+                   "rms_to_paper": curve["rms_to_paper"], **about, **parameters}
+
+
+states, jobs, fits, server = {}, {}, [], None
+for word in sys.argv[1:]:
+    if word.startswith("http"):
+        server = word.rstrip("/") + "/v1"
+        sweeps = json.loads(get(f"{server}/sweeps"))["items"]
+    elif word.endswith(".jsonl"):
+        lines = [json.loads(line) for line in open(word)]
+        scene, kernel = lines[0]["reduced"], lines[-1]["kernel"]
+        for line in lines[1:-1]:
+            row = dict(line["row"], n=scene["n"], assembly=scene["assembly"], mu_r=scene["mu_r"], seed=scene["seed"],
+                       kernel=kernel, physics_version=2)
+            states[word, row["state"]] = row
+    else:
+        for sweep in sweeps:
+            if sweep["name"] == word:
+                fits += fitted(word, json.loads(get(f"{server}/sweeps/{sweep['id']}/consolidation")))
+                for line in get(f"{server}/sweeps/{sweep['id']}/states?format=ndjson").splitlines():
+                    row = json.loads(line)
+                    states[row["scene_key"], row["state"]] = row
+                    jobs[row["scene_key"]] = server, row["job"]
 rows = sorted(states.values(), key=lambda r: (r["assembly"], r["mu_r"], r["n"], r["seed"], r["state"]))
 with open(HERE / "states.csv", "w", newline="") as file:
     out = csv.writer(file, lineterminator="\n")
@@ -51,7 +77,7 @@ with open(HERE / "states.csv", "w", newline="") as file:
 
 bins = collections.defaultdict(list)
 scattering = []
-for key, job in jobs.items():
+for key, (server, job) in jobs.items():
     tables = json.loads(get(f"{server}/jobs/{job}/snapshot"))
     column = {c["name"]: c["values"] for c in tables["normal_forces"]["columns"]}
     for state, force, density in zip(column["state"], column["normal_force"], column["density"]):
@@ -78,4 +104,5 @@ with open(HERE / "forces.csv", "w", newline="") as file:
         mean = sum(densities) / len(densities)
         if mean > 0:
             out.writerow([assembly, mu_r, p, short(force), short(mean), len(densities)])
+(HERE / "fits.json").write_text(json.dumps(fits, indent=1) + "\n")
 print(f"{len(jobs)} runs, {len(rows)} states")

@@ -1,0 +1,46 @@
+"""Experiments on the preparation: writes experiments.csv and prints the table of README.md.
+
+usage: experiments.py            (table from experiments.csv)
+       experiments.py DIRECTORY  (reads LABEL_sSEED.jsonl, the output of `consolidate`, first)
+
+Standard library only."""
+import collections
+import csv
+import json
+import math
+import pathlib
+import re
+import statistics
+import sys
+
+HERE = pathlib.Path(__file__).parent
+COLUMNS = ["branch", "p", "phi", "z", "z_star", "rattler_share", "steps", "converged"]
+if len(sys.argv) > 1:
+    with open(HERE / "experiments.csv", "w", newline="") as file:
+        out = csv.writer(file, lineterminator="\n")
+        out.writerow(["label", "seed"] + COLUMNS)
+        for path in sorted(pathlib.Path(sys.argv[1]).glob("*.jsonl")):
+            label, seed = re.fullmatch(r"(.+)_s(\d+)", path.stem).groups()
+            for line in map(json.loads, open(path)):
+                if "row" in line:
+                    values = [line["row"].get(name, "") for name in COLUMNS]
+                    out.writerow([label, seed] + [f"{v:.8g}" if isinstance(v, float) else v for v in values])
+groups = collections.defaultdict(list)
+with open(HERE / "experiments.csv") as file:
+    for row in csv.DictReader(file):
+        groups[row["label"], row["branch"], float(row["p"])].append(row)
+
+
+def told(rows, column, digits):
+    values = [float(r[column]) for r in rows if r[column] != ""]
+    if len(values) < 2:
+        return f"{values[0]:.{digits}f}" if values else "-"
+    return f"{statistics.fmean(values):.{digits}f} ± {statistics.stdev(values) / math.sqrt(len(values)):.{digits}f}"
+
+
+print("| label | state | P* | samples | Φ | scatter of Φ | z | z* | x0 |\n|---|---|---|---|---|---|---|---|---|")
+for (label, branch, p), rows in groups.items():
+    phi = [float(r["phi"]) for r in rows]
+    scatter = f"{statistics.stdev(phi):.4f}" if len(phi) > 1 else "-"
+    print(f"| {label} | {branch} | {p:g} | {len(rows)} | {told(rows, 'phi', 4)} | {scatter} | {told(rows, 'z', 3)} | "
+          f"{told(rows, 'z_star', 3)} | {told(rows, 'rattler_share', 3)} |")
