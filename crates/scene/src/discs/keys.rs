@@ -208,7 +208,7 @@ pub(super) const KEYS: &[Key] = &[
         unit: "tau",
         domain: Domain::Auto(&Domain::Real(Bound::Including(1e-4), Bound::Including(0.14))),
         absent: Absent::Default("\"auto\""),
-        meaning: "time step in √(m/K_N); \"auto\": 0.1 or 0.16 (d_min/a)²/√(K_R/(K_N a²)) if that is less; above 0.15 the scheme fails silently",
+        meaning: "time step in √(m/K_N); \"auto\": the least of 0.1, 0.2 (d_min/a)/√(K_T/K_N) where K_T > K_N, 0.2 d_min/a and 0.16 (d_min/a)²/√(K_R/(K_N a²)); more than 1.4 times that is refused, the scheme would fail silently",
         source: OURS,
     },
     Key {
@@ -237,6 +237,19 @@ pub(super) fn conflicts(scene: &Discs) -> Vec<Problem> {
             &Value::from(speed),
             format!("discs of type 2 slower than {SLOWEST} V* never meet"),
             "raise v0",
+        ));
+    }
+    let largest_step = 1.4 * scene.automatic_step();
+    if let Some(step) = scene.dt
+        && step > largest_step * (1.0 + 1e-12)
+    {
+        problems.push(Problem::new(
+            "dt".to_owned(),
+            &Value::from(step),
+            format!(
+                "exceeds {largest_step:.4} √(m/K_N): the stiffest springs of the smallest discs are unstable"
+            ),
+            "leave dt out or lower it",
         ));
     }
     let in_stiffness = if scene.assembly == Assembly::Cohesionless { 1.0 } else { 1.0 / scene.kappa };
