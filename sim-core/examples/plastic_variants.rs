@@ -169,7 +169,7 @@ fn approach(kind: ContactKind, h: f64, offset: f64, pair: bool) -> f64 {
     let disc = |x: f64, v: f64| -> Body {
         let centre = [x, 0.0];
         let (fill, markers) = (spline::disc(centre, 0.5, h), spline::circle(centre, 0.5, h, 0.25));
-        let mut body = updated::body(fill, markers, h, 0.5, centre, &material);
+        let mut body = updated::body(&fill, markers, h, 0.5, centre, &material);
         let cloud = body.cloud.as_mut().expect("an updated Lagrangian body");
         cloud.velocity.fill([v, 0.0]);
         body

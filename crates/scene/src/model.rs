@@ -65,8 +65,11 @@ impl Model {
         match self {
             // 2, spheres: the time step follows the network alone, and may be larger than 0.1 τ.
             // 2, discs: tangential force in the plane as one number; exact sum of the stress.
-            // 2, plastic discs: over-relaxed contact sweeps, a step begins with the last halving.
-            Self::CohesiveSpheres | Self::CohesiveDiscs | Self::PlasticDiscs => 2,
+            Self::CohesiveSpheres | Self::CohesiveDiscs => 2,
+            // 2: over-relaxed contact sweeps, a step begins with the last halving.
+            // 3: iterates are accelerated, factors renewed by body; splines see their gradients in the mean over what a
+            // point stands for.
+            Self::PlasticDiscs => 3,
         }
     }
 

@@ -4,7 +4,9 @@
 //! A = M + θ² Δt² K couples no two bodies: each has its own factor, and contact sees it through the compliance of the
 //! body's boundary.
 
+mod accelerate;
 mod commit;
+mod errors;
 
 use rayon::prelude::*;
 
@@ -20,6 +22,7 @@ use super::skyline::Skyline;
 use super::template::OUT_OF_REACH;
 use super::updated;
 use super::world::World;
+use accelerate::Accelerator;
 
 /// Residual ratio of two iterations above which old factors are given up.
 const SLOW: f64 = 0.5;
@@ -31,6 +34,8 @@ const RIGID: f64 = 1e30;
 struct Work {
     velocity: Vec<f64>,
     free: Vec<f64>,
+    /// What the last iteration changed of `velocity`.
+    change: Vec<f64>,
     displacement: Vec<f64>,
     /// Internal force at the start of the step.
     start_force: Vec<f64>,
@@ -39,6 +44,10 @@ struct Work {
     trial: Points,
     matrix: Skyline,
     scratch: Vec<f64>,
+    /// Whether the next linearisation makes a new matrix.
+    fresh: bool,
+    /// Norm of the residual, contact included, in this iteration and the one before.
+    left: [f64; 2],
 }
 
 /// Solver with its scratch space; holds nothing that a run depends on.
@@ -51,6 +60,7 @@ pub struct Implicit {
     contact_velocity: Vec<Vec<f64>>,
     contact_impulse: Vec<Vec<f64>>,
     sizes: Vec<usize>,
+    accelerator: Accelerator,
 }
 
 impl Implicit {
@@ -70,6 +80,7 @@ impl Implicit {
             contact_velocity: sizes.iter().map(|&size| vec![0.0; size]).collect(),
             contact_impulse: sizes.iter().map(|&size| vec![0.0; size]).collect(),
             sizes,
+            accelerator: Accelerator::default(),
         }
     }
 
@@ -113,14 +124,15 @@ impl Implicit {
             world.impulses.iter().map(|&(key, p)| (key, p.map(|one| one * scale))).collect();
         for (work, body) in self.work.iter_mut().zip(&world.bodies) {
             work.velocity.copy_from_slice(&body.velocity);
+            work.fresh = true;
+            work.left = [f64::INFINITY; 2];
         }
+        self.accelerator.clear();
         let cell = world.bodies.iter().map(|body| body.template.cell * body.size).fold(f64::MAX, f64::min);
         let mut worst = (f64::INFINITY, f64::INFINITY);
-        // the factors of the second iterate serve the later ones while they do their work: what is left to find then
-        // are contact normals
-        let mut fresh = true;
+        let mut accelerated = false;
         for iteration in 0..=numerics.iterations {
-            self.linearise(world, dt, fresh)?;
+            self.linearise(world, dt, |_| true)?;
             self.detect(world, &walls, 0.3 * cell, advance)?;
             self.rows.build(&self.candidates, &world.bodies, &walls, &warm, world.contact);
             let (residual, gap) = self.errors(world, dt, cell);
@@ -135,14 +147,15 @@ impl Implicit {
             if iteration == numerics.iterations {
                 break;
             }
-            if fresh {
-                self.factorise(world)?;
-            } else if slow {
-                self.linearise(world, dt, true)?;
-                self.factorise(world)?;
+            // the factors of the second iterate serve the later ones while they do their work: what is left to find then
+            // are contact normals
+            if iteration >= 2 && slow {
+                self.renew(0.1 * residual);
+                self.linearise(world, dt, |work| work.fresh)?;
             }
+            self.factorise(world)?;
             self.release(world);
-            fresh = iteration == 0;
+            self.work.iter_mut().for_each(|work| work.fresh = iteration == 0);
             self.bound(world, advance);
             gauss_seidel::prepare(&mut self.rows, &self.compliance, &self.sizes, world.friction);
             for ((contact, work), body) in self.contact_velocity.iter_mut().zip(&self.work).zip(&world.bodies)
@@ -160,24 +173,34 @@ impl Implicit {
                 tolerance,
             );
             world.effort.sweeps += solve.sweeps as u64;
-            self.correct(world, 0.5 * cell / dt);
+            let limit = 0.5 * cell / dt;
+            self.correct(world, limit);
+            self.accelerator.remember(&self.work);
+            accelerated = slow && iteration >= 2 && !accelerated && {
+                self.accelerator.apply(&mut self.work, &world.bodies, limit)
+            };
             warm = self.rows.rows.iter().map(|row| (row.key, row.impulse)).collect();
         }
         world.effort.newton += numerics.iterations as u64;
         Err(Failure::Residual { residual: worst.0, gap: worst.1 })
     }
 
-    /// Forces at the present velocities, and matrices if wanted.
-    fn linearise(&mut self, world: &World, dt: f64, tangent: bool) -> Result<(), Failure> {
+    /// Forces of some bodies at the present velocities, and new matrices where these are due.
+    fn linearise(
+        &mut self,
+        world: &World,
+        dt: f64,
+        of: impl Fn(&Work) -> bool + Sync,
+    ) -> Result<(), Failure> {
         let (law, theta, gravity): (Law, _, _) = (world.law, world.numerics.theta, world.acceleration);
         let all = self.work.par_iter_mut().zip(&world.bodies).enumerate();
-        collect(all.map(|(number, (work, body))| {
+        collect(all.filter(|(_, (work, _))| of(work)).map(|(number, (work, body))| {
             let motion = work.velocity.iter().zip(&body.velocity).zip(&body.displacement);
             for (u, ((v, v0), u0)) in work.displacement.iter_mut().zip(motion) {
                 *u = u0 + dt * (theta * v + (1.0 - theta) * v0);
             }
             let (trial, force) = (&mut work.trial, &mut work.force);
-            let done = if tangent {
+            let done = if work.fresh {
                 work.matrix.clear();
                 let factor = theta * theta * dt * dt;
                 internal_force_and_tangent(
@@ -251,43 +274,10 @@ impl Implicit {
         beyond.map_or(Ok(()), |body| Err(Failure::OutOfReach { body }))
     }
 
-    /// Relative force residual with the present impulses, and worst overlap or gap under load in cells.
-    fn errors(&mut self, world: &World, dt: f64, cell: f64) -> (f64, f64) {
-        self.contact_impulse.iter_mut().for_each(|vector| vector.fill(0.0));
-        self.rows.scatter(&mut self.contact_impulse);
-        let (mut residual, mut forces, mut contact, mut inertia) = (0.0, 0.0, 0.0, 0.0);
-        for ((body, work), impulse) in world.bodies.iter().zip(&self.work).zip(&self.contact_impulse) {
-            let profile = &body.template.profile;
-            let inner = profile.size() - profile.contact_size();
-            for (unknown, r) in work.residual.iter().enumerate() {
-                let row = profile.row_of(unknown);
-                let p = if row >= inner { impulse[row - inner] } else { 0.0 };
-                // what holds an unknown at rest also takes the impulse on it
-                let left = if body.fixed.contains(&(unknown as u32)) { 0.0 } else { r - p };
-                residual += left * left;
-                contact += p * p;
-                let force = dt * work.force[unknown];
-                forces += force * force;
-                let momentum = body.mass[unknown / 2] * work.velocity[unknown];
-                inertia += momentum * momentum;
-            }
-        }
-        let scale = f64::max(forces, contact).max(1e-6 * inertia);
-        let relative = if scale > 0.0 { (residual / scale).sqrt() } else { 0.0 };
-        let loads: f64 = self.rows.rows.iter().map(|row| row.impulse[0]).sum();
-        let mean = loads / self.rows.rows.iter().filter(|row| row.impulse[0] > 0.0).count().max(1) as f64;
-        let mut worst = 0.0_f64;
-        for (row, candidate) in self.rows.rows.iter().zip(self.candidates.iter().flatten()) {
-            let under_load = if row.impulse[0] > 1e-3 * mean { candidate.gap } else { 0.0 };
-            worst = worst.max(-candidate.gap).max(under_load);
-        }
-        (relative, worst / cell)
-    }
-
-    /// Factors and boundary compliances.
+    /// Factors and boundary compliances of the new matrices.
     fn factorise(&mut self, world: &World) -> Result<(), Failure> {
         let all = self.work.par_iter_mut().zip(&world.bodies).zip(&mut self.compliance).enumerate();
-        collect(all.map(|(number, ((work, body), compliance))| {
+        collect(all.filter(|(_, ((work, _), _))| work.fresh).map(|(number, ((work, body), compliance))| {
             let profile = &body.template.profile;
             for (unknown, mass) in body.mass.iter().flat_map(|mass| [mass, mass]).enumerate() {
                 work.matrix.add(profile.entry(unknown, unknown), *mass);
@@ -353,8 +343,9 @@ impl Implicit {
             .collect();
         let share = (limit / most.into_iter().fold(limit, f64::max)).min(1.0);
         for work in &mut self.work {
-            for (v, new) in work.velocity.iter_mut().zip(&work.free) {
-                *v += share * (new - *v);
+            for ((v, new), change) in work.velocity.iter_mut().zip(&work.free).zip(&mut work.change) {
+                *change = share * (new - *v);
+                *v += *change;
             }
         }
     }
@@ -370,6 +361,7 @@ impl Work {
         Self {
             velocity: zero(),
             free: zero(),
+            change: zero(),
             displacement: zero(),
             start_force,
             force: zero(),
@@ -377,6 +369,8 @@ impl Work {
             trial: body.points.clone(),
             matrix: Skyline::zero(&body.template.profile),
             scratch: zero(),
+            fresh: true,
+            left: [f64::INFINITY; 2],
         }
     }
 }
@@ -421,6 +415,6 @@ fn gather_contact(body: &Body, values: &[f64], out: &mut [f64]) {
 }
 
 /// The first failure in the order of the bodies, whichever thread met it first.
-fn collect(results: impl IndexedParallelIterator<Item = Result<(), Failure>>) -> Result<(), Failure> {
+fn collect(results: impl ParallelIterator<Item = Result<(), Failure>>) -> Result<(), Failure> {
     results.collect::<Vec<_>>().into_iter().collect()
 }

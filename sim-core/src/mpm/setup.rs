@@ -114,7 +114,7 @@ impl Shapes {
             let fill = spline::disc(centre, radius, self.spacing);
             let turn = if self.symmetric { 0.0 } else { 0.25 };
             let markers = spline::circle(centre, radius, self.spacing, turn);
-            let mut body = updated::body(fill, markers, self.spacing, radius, centre, material);
+            let mut body = updated::body(&fill, markers, self.spacing, radius, centre, material);
             if let Some(cloud) = &mut body.cloud {
                 cloud.held = [self.symmetric; 2];
             }

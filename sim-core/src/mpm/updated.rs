@@ -12,7 +12,8 @@ use super::constitutive::Material;
 use super::contact::ContactKind;
 use super::contact::detect::Outline;
 use super::contact::nodes::shared_nodes;
-use super::spline::Fill;
+use super::plane::Mat2;
+use super::spline::{Fill, Spread};
 use super::template::{Reach, Scatter, cell_order, nodes, spline};
 use super::world::World;
 
@@ -37,6 +38,8 @@ pub struct Cloud {
     pub mass: Vec<f64>,
     /// Present volumes.
     pub volume: Vec<f64>,
+    /// Present second moments of what the points stand for.
+    pub spread: Vec<Spread>,
     /// Outline markers.
     pub markers: Vec<[f64; 2]>,
 }
@@ -44,17 +47,24 @@ pub struct Cloud {
 /// A body at rest on the grid of the given spacing; [`regrid`] lays its first grid once the world is there.
 #[must_use]
 pub fn body(
-    fill: Fill,
+    fill: &Fill,
     markers: Vec<[f64; 2]>,
     spacing: f64,
     size: f64,
     origin: [f64; 2],
     material: &Material,
 ) -> Body {
-    let order = cell_order(&fill.positions, spacing);
-    let position: Vec<[f64; 2]> = order.iter().map(|&p| fill.positions[p]).collect();
-    let volume: Vec<f64> = order.iter().map(|&p| fill.volumes[p]).collect();
-    let scatter = Scatter { spacing, origin, size, points: &position, volumes: &volume, markers: &markers };
+    let Fill { positions: position, volumes: volume, spreads: spread } =
+        fill.permuted(&cell_order(&fill.positions, spacing));
+    let scatter = Scatter {
+        spacing,
+        origin,
+        size,
+        points: &position,
+        volumes: &volume,
+        spreads: &spread,
+        markers: &markers,
+    };
     let mut body = Body::new(
         spline(&scatter, &Reach::Markers(&vec![false; markers.len()])).into(),
         size,
@@ -70,6 +80,7 @@ pub fn body(
         mass: volume.iter().map(|volume| volume * material.density).collect(),
         position,
         volume,
+        spread,
         markers,
     }));
     body
@@ -103,10 +114,20 @@ pub(super) fn carry(body: &mut Body) {
             cloud.velocity[p] = velocity;
             cloud.affine[p] = c.map(|one| one * inertia);
             cloud.volume[p] *= body.points.gradient[p].det();
+            cloud.spread[p] = carried(cloud.spread[p], body.points.gradient[p]);
         }
     }
     body.outline_at(&body.displacement, &mut cloud.markers);
     body.cloud = Some(cloud);
+}
+
+/// The moments of a domain that moves with F: F M Fᵀ.
+fn carried([xx, xy, yy]: Spread, f: Mat2) -> Spread {
+    [
+        f.xx * f.xx * xx + 2.0 * f.xx * f.xy * xy + f.xy * f.xy * yy,
+        f.xx * f.yx * xx + (f.xx * f.yy + f.xy * f.yx) * xy + f.xy * f.yy * yy,
+        f.yx * f.yx * xx + 2.0 * f.yx * f.yy * xy + f.yy * f.yy * yy,
+    ]
 }
 
 /// Lays new grids under all updated Lagrangian bodies; the kinetic energy that the transfer loses is booked.
@@ -148,6 +169,7 @@ fn scatter<'a>(body: &Body, cloud: &'a Cloud) -> Scatter<'a> {
         size: body.size,
         points: &cloud.position,
         volumes: &cloud.volume,
+        spreads: &cloud.spread,
         markers: &cloud.markers,
     }
 }
@@ -206,7 +228,7 @@ fn lay(body: &mut Body, reach: &Reach) {
     body.displacement = vec![0.0; 2 * count];
     let mut momentum = vec![0.0; 2 * count];
     body.template = template.into();
-    body.points.gradient.fill(super::plane::Mat2::identity());
+    body.points.gradient.fill(Mat2::identity());
     let template = &*body.template;
     for (cell, corners) in template.cells.as_chunks::<16>().0.iter().enumerate() {
         for p in template.first_point[cell] as usize..template.first_point[cell + 1] as usize {
@@ -255,6 +277,7 @@ fn sort(cloud: &mut Cloud, points: &mut Points) {
     permuted(&mut cloud.affine, &order);
     permuted(&mut cloud.mass, &order);
     permuted(&mut cloud.volume, &order);
+    permuted(&mut cloud.spread, &order);
     permuted(&mut points.stress, &order);
     permuted(&mut points.plastic, &order);
 }

@@ -32,8 +32,9 @@ fn run(scene: &Scene, threads: usize) -> Outcome {
 
 #[test]
 fn the_explicit_method_compacts_as_the_implicit_one() {
-    let [implicit, explicit] =
-        ["implicit", "explicit"].map(|method| run(&small(&json!({"method": method, "strain_end": 0.24})), 2));
+    // short implicit steps: with the 0.1 µs of the other tests backward Euler takes 2 to 4 % of the work
+    let [implicit, explicit] = ["implicit", "explicit"]
+        .map(|method| run(&small(&json!({"method": method, "strain_end": 0.24, "dt": 1.25e-8})), 2));
     let at = |outcome: &Outcome, k: usize, name: &str| outcome.states[k].real(name).unwrap();
     assert_eq!(implicit.states.len(), explicit.states.len());
     for k in (9..implicit.states.len()).step_by(5) {
@@ -43,7 +44,7 @@ fn the_explicit_method_compacts_as_the_implicit_one() {
         };
         // what the walls have done to the discs; the stress of an instant has the noise of inertia in it
         close("phi", 2e-3);
-        close("work", 0.03);
+        close("work", 0.02);
         close("sigma", 0.1);
         close("z", 0.1);
     }

@@ -104,8 +104,7 @@ pub fn compaction(curves: &[PlasticCurve], options: &CompactionOptions) -> Resul
     if sorted.is_empty() {
         return Err(FitError::too_few("compaction", "runs with states", 1, 0));
     }
-    let rank = |curve: &PlasticCurve| curve.material.h.unwrap_or(-1.0);
-    sorted.sort_by(|a, b| rank(a).total_cmp(&rank(b)).then(a.seed.cmp(&b.seed)));
+    sorted.sort_by(|a, b| a.order(b));
     let elastic = sorted.iter().find(|curve| curve.material.h.is_none()).copied();
     let elastic_constants = elastic.map(|curve| fit::constants(curve, options));
     let curves = sorted

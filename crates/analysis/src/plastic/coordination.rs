@@ -41,7 +41,7 @@ pub struct CoordinationCurve {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "openapi", derive(utoipa::ToSchema))]
 pub struct Coordination {
-    /// One per run.
+    /// One per run, elastic ones first, then by rising H.
     pub curves: Vec<CoordinationCurve>,
     /// Mean exponent of the free fits [1]; the paper has 1/2.
     pub gamma: Determined<Estimate>,
@@ -57,8 +57,9 @@ const LATER: f64 = 0.95;
 /// # Errors
 /// [`FitError::TooFew`] when no run has Z.
 pub fn coordination(curves: &[PlasticCurve]) -> Result<Coordination, FitError> {
-    let with_z: Vec<&PlasticCurve> =
+    let mut with_z: Vec<&PlasticCurve> =
         curves.iter().filter(|curve| curve.states.iter().any(|state| state.z.is_some())).collect();
+    with_z.sort_by(|a, b| a.order(b));
     if with_z.is_empty() {
         return Err(FitError::too_few("coordination (17)", "runs with z", 1, 0));
     }

@@ -1,5 +1,7 @@
 //! One compaction run and its jamming point.
 
+use std::cmp::Ordering;
+
 use record::Row;
 use serde::{Deserialize, Serialize};
 
@@ -104,6 +106,13 @@ impl PlasticCurve {
             None => "elastic".to_owned(),
             Some(h) => format!("H = {} MPa", crate::plot::plain(h / 1e6)),
         }
+    }
+
+    /// Elastic discs first, then by rising H, then by seed.
+    #[must_use]
+    pub fn order(&self, other: &Self) -> Ordering {
+        let rank = |curve: &Self| curve.material.h.unwrap_or(-1.0);
+        rank(self).total_cmp(&rank(other)).then(self.seed.cmp(&other.seed))
     }
 
     /// Index of the onset of sustained stress on the bottom wall: from it on σ > 1e-4 E.

@@ -1,18 +1,58 @@
 //! Compaction and coordination of the plastic discs.
 
+use plotters::style::RGBColor;
+
 use super::axis::{Axis, Scale};
 use super::collapse::with_error;
-use super::figure::{Dash, Dot, Figure, Fill, INK, Layer, MARKERS, MUTED, PALETTE, Panel, Sample};
+use super::figure::{Dash, Dot, Figure, Fill, INK, Layer, MARKERS, MUTED, Marker, PALETTE, Panel, Sample};
+use crate::Estimate;
+use crate::estimate::mean_of;
 use crate::plastic::{Compaction, Coordination, PlasticCurve, PlasticState};
+
+/// Colour and marker of each material: runs that differ in their packing alone look alike and share a line of the legend.
+struct Styles(Vec<(String, usize)>);
+
+impl Styles {
+    /// In the order in which materials first come.
+    fn new(names: impl Iterator<Item = String>) -> Self {
+        let mut materials: Vec<(String, usize)> = Vec::new();
+        for name in names {
+            match materials.iter_mut().find(|(known, _)| *known == name) {
+                Some((_, runs)) => *runs += 1,
+                None => materials.push((name, 1)),
+            }
+        }
+        Self(materials)
+    }
+
+    fn of(&self, name: &str) -> (RGBColor, Marker) {
+        let place = self.0.iter().position(|(known, _)| known == name).unwrap_or_default();
+        (PALETTE[place % PALETTE.len()], MARKERS[place % MARKERS.len()])
+    }
+
+    /// One entry per material, named by the material, the number of its runs and what `more` has to say.
+    fn legend(
+        &self,
+        sample: impl Fn((RGBColor, Marker)) -> Sample,
+        more: impl Fn(&str) -> Option<String>,
+    ) -> Vec<(Sample, String)> {
+        let entry = |(name, runs): &(String, usize)| {
+            let several = if *runs > 1 { format!(" ({runs} runs)") } else { String::new() };
+            let more = more(name).map_or_else(String::new, |more| format!(": {more}"));
+            (sample(self.of(name)), format!("{name}{several}{more}"))
+        };
+        self.0.iter().map(entry).collect()
+    }
+}
 
 /// Stress against Φ (left) and excess strain (right), points with the fitted model (lines) and the paper's constants.
 #[must_use]
 pub fn compaction_svg(compaction: &Compaction) -> String {
-    let mut row = Vec::new();
+    let styles = Styles::new(compaction.curves.iter().map(|curve| curve.name.clone()));
     let (mut by_phi, mut by_strain) = (Vec::new(), Vec::new());
     let (mut phis, mut strains, mut stresses) = (Vec::new(), Vec::new(), Vec::new());
-    for (i, curve) in compaction.curves.iter().enumerate() {
-        let (color, marker) = (PALETTE[i % PALETTE.len()], MARKERS[i % MARKERS.len()]);
+    for curve in &compaction.curves {
+        let (color, marker) = styles.of(&curve.name);
         let start = curve.jamming.value().and_then(|jamming| jamming.strain_c);
         let dots = |x: &dyn Fn(&PlasticState) -> Option<f64>| -> Vec<Dot> {
             curve
@@ -43,7 +83,6 @@ pub fn compaction_svg(compaction: &Compaction) -> String {
         let strain_line =
             curve.model.iter().filter_map(|sample| Some((sample.excess_strain?, sample.by_strain? / 1e6)));
         by_strain.push(Layer::Line { color, dash: Dash::Solid, points: strain_line.collect() });
-        row.push((Sample::Point(color, marker, Fill::Open), curve.name.clone()));
     }
     let stress = |label: &str| Axis::around(label, Scale::Linear, stresses.iter().copied());
     Figure {
@@ -61,7 +100,7 @@ pub fn compaction_svg(compaction: &Compaction) -> String {
             },
         ],
         legend: vec![
-            row,
+            styles.legend(|(color, marker)| Sample::Point(color, marker, Fill::Open), |_| None),
             vec![
                 (Sample::Line(MUTED, Dash::Solid), "model, fitted constants".to_owned()),
                 (Sample::Line(MUTED, Dash::Dashed), "model, paper's constants".to_owned()),
@@ -74,11 +113,11 @@ pub fn compaction_svg(compaction: &Compaction) -> String {
 /// Excess coordination number against excess solid fraction in log–log.
 #[must_use]
 pub fn coordination_svg(coordination: &Coordination) -> String {
+    let styles = Styles::new(coordination.curves.iter().map(|curve| curve.name.clone()));
     let mut layers = Vec::new();
-    let mut row = Vec::new();
     let (mut xs, mut ys) = (Vec::new(), Vec::new());
-    for (i, curve) in coordination.curves.iter().enumerate() {
-        let (color, marker) = (PALETTE[i % PALETTE.len()], MARKERS[i % MARKERS.len()]);
+    for curve in &coordination.curves {
+        let (color, marker) = styles.of(&curve.name);
         let dots: Vec<Dot> = curve
             .points
             .iter()
@@ -88,11 +127,15 @@ pub fn coordination_svg(coordination: &Coordination) -> String {
         xs.extend(dots.iter().map(|dot| dot.x));
         ys.extend(dots.iter().map(|dot| dot.y));
         layers.push(Layer::Points { color, marker, fill: Fill::Full, dots });
-        let gamma = curve.free.value().and_then(|fit| fit.parameter("gamma"));
-        let text =
-            gamma.map_or(curve.name.clone(), |gamma| format!("{}: γ = {}", curve.name, with_error(gamma)));
-        row.push((Sample::Point(color, marker, Fill::Full), text));
     }
+    let gamma = |name: &str| {
+        let runs = coordination.curves.iter().filter(|curve| curve.name == name);
+        let fits: Vec<Estimate> = runs.filter_map(|curve| curve.free.value()?.parameter("gamma")).collect();
+        let values: Vec<f64> = fits.iter().map(|gamma| gamma.value).collect();
+        let gamma = if values.len() > 1 { mean_of(&values)? } else { *fits.first()? };
+        Some(format!("γ = {}", with_error(gamma)))
+    };
+    let mut row = styles.legend(|(color, marker)| Sample::Point(color, marker, Fill::Full), gamma);
     let slopes: Vec<f64> =
         coordination.curves.iter().filter_map(|curve| Some(curve.square_root.value()?.values()[1])).collect();
     let x = Axis::around("excess solid fraction Φ − Φc", Scale::Log, xs.into_iter());
@@ -120,10 +163,11 @@ pub fn coordination_svg(coordination: &Coordination) -> String {
 /// κ⟨d⟩ (left) and Φ (right) against stress.
 #[must_use]
 pub fn curvature_svg(compaction: &Compaction) -> String {
-    let (mut row, mut kappas, mut phis) = (Vec::new(), Vec::new(), Vec::new());
+    let styles = Styles::new(compaction.curves.iter().map(|curve| curve.name.clone()));
+    let (mut kappas, mut phis) = (Vec::new(), Vec::new());
     let (mut stresses, mut sharpest, mut densest) = (Vec::new(), Vec::new(), Vec::new());
-    for (i, curve) in compaction.curves.iter().enumerate() {
-        let (color, marker) = (PALETTE[i % PALETTE.len()], MARKERS[i % MARKERS.len()]);
+    for curve in &compaction.curves {
+        let (color, marker) = styles.of(&curve.name);
         let dots = |y: &dyn Fn(&PlasticState) -> Option<f64>| -> Vec<Dot> {
             let dot = |state: &PlasticState| Some(Dot { x: state.sigma / 1e6, y: y(state)?, error: None });
             curve.states.iter().filter(|state| state.sigma > 0.0).filter_map(dot).collect()
@@ -134,8 +178,8 @@ pub fn curvature_svg(compaction: &Compaction) -> String {
         densest.extend(phi.iter().map(|dot| dot.y));
         kappas.push(Layer::Points { color, marker, fill: Fill::Open, dots: kappa });
         phis.push(Layer::Points { color, marker, fill: Fill::Open, dots: phi });
-        row.push((Sample::Point(color, marker, Fill::Open), curve.name.clone()));
     }
+    let row = styles.legend(|(color, marker)| Sample::Point(color, marker, Fill::Open), |_| None);
     let stress = || Axis::around("stress σ [MPa]", Scale::Linear, stresses.iter().copied());
     Figure {
         title: "Shape and solid fraction under stress".to_owned(),
@@ -166,10 +210,10 @@ pub fn stress_strain_svg(curves: &[PlasticCurve]) -> String {
         ("volume mean of −σyy [MPa]", |state| state.sigma_volume),
         ("−σyy at the centre [MPa]", |state| state.sigma_centre),
     ];
-    let style = |i: usize| (PALETTE[i % PALETTE.len()], MARKERS[i % MARKERS.len()]);
+    let styles = Styles::new(curves.iter().map(PlasticCurve::name));
     let panel = |(label, stress): (&str, Stress)| {
         let (mut xs, mut ys, mut layers) = (Vec::new(), Vec::new(), Vec::new());
-        for (i, curve) in curves.iter().enumerate() {
+        for curve in curves {
             let points: Vec<(f64, f64)> = curve
                 .states
                 .iter()
@@ -177,17 +221,34 @@ pub fn stress_strain_svg(curves: &[PlasticCurve]) -> String {
                 .collect();
             xs.extend(points.iter().map(|point| point.0));
             ys.extend(points.iter().map(|point| point.1));
-            layers.push(Layer::Line { color: style(i).0, dash: Dash::Solid, points });
+            layers.push(Layer::Line { color: styles.of(&curve.name()).0, dash: Dash::Solid, points });
         }
         let x = Axis::around("strain 1 − h/D", Scale::Linear, xs.into_iter().chain([0.0]));
         Panel { x, y: Axis::around(label, Scale::Linear, ys.into_iter().chain([0.0])), layers }
     };
-    let entry =
-        |(i, curve): (usize, &PlasticCurve)| (Sample::Line(style(i).0, Dash::Solid), curve.name().clone());
     Figure {
         title: "One disc between walls: four definitions of stress".to_owned(),
         panels: DEFINITIONS.map(panel).into(),
-        legend: vec![curves.iter().enumerate().map(entry).collect()],
+        legend: vec![styles.legend(|(color, _)| Sample::Line(color, Dash::Solid), |_| None)],
     }
     .svg()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_of_one_material_share_a_colour_and_a_line_of_the_legend() {
+        let names = ["elastic", "elastic", "H = 1 MPa", "elastic", "H = 1 MPa"];
+        let styles = Styles::new(names.into_iter().map(str::to_owned));
+        assert_eq!(styles.of("elastic").0, PALETTE[0]);
+        assert_eq!(styles.of("H = 1 MPa").0, PALETTE[1]);
+        let legend = styles.legend(
+            |(color, marker)| Sample::Point(color, marker, Fill::Open),
+            |name| (name == "elastic").then(|| "γ = 0.5".to_owned()),
+        );
+        let texts: Vec<&str> = legend.iter().map(|(_, text)| text.as_str()).collect();
+        assert_eq!(texts, ["elastic (3 runs): γ = 0.5", "H = 1 MPa (2 runs)"]);
+    }
 }

@@ -158,7 +158,7 @@ mod tests {
         let at = |low: [i32; 2]| {
             let (fill, markers) = (block(low, [4, 4], 1.0), rim(low, [4, 4], 1.0));
             let corner = low.map(f64::from);
-            updated::body(fill, markers, 1.0, 1.0, corner, &material)
+            updated::body(&fill, markers, 1.0, 1.0, corner, &material)
         };
         let mut world = World::new(vec![at([0, 0]), at([5, 0]), at([20, 0])], Vec::new(), law);
         world.contact = ContactKind::CommonMesh;

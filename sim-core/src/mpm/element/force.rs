@@ -1,5 +1,7 @@
 //! Internal forces alone.
 
+use std::ops::Range;
+
 use super::ghost::add_force;
 use super::{Inverted, LEAST_STEP_JACOBIAN, Law};
 use crate::mpm::body::{Body, Points};
@@ -41,27 +43,15 @@ fn by_cell<const N: usize>(
     let gradients = template.gradients.as_chunks::<N>().0;
     for (cell, nodes) in cells.iter().enumerate() {
         let points = template.first_point[cell] as usize..template.first_point[cell + 1] as usize;
-        let u = nodes.map(|node| [displacement[2 * node as usize], displacement[2 * node as usize + 1]]);
-        let (mut before, mut after) = (0.0, 0.0);
-        for p in points.clone() {
-            let f = gradient(&u, &gradients[p], unit);
-            trial.gradient[p] = f;
-            before += template.volumes[p] * body.points.gradient[p].det();
-            after += template.volumes[p] * f.det();
-        }
         if points.is_empty() {
             continue;
         }
+        let u = nodes.map(|node| [displacement[2 * node as usize], displacement[2 * node as usize + 1]]);
+        let swelling = deform(body, points.clone(), &u, gradients, trial);
         let mut sum = [[0.0; 2]; N];
         for p in points {
             let now = trial.gradient[p];
-            let step = now.dot(body.points.gradient[p].inverse());
-            let jacobian = step.det();
-            if jacobian.is_nan() || jacobian <= LEAST_STEP_JACOBIAN {
-                return Err(Inverted { point: p });
-            }
-            let seen =
-                if law.mean_dilatation { step.scaled((after / before / jacobian).sqrt()) } else { step };
+            let seen = swelling.seen(law, now.dot(body.points.gradient[p].inverse()), p)?;
             let strain = increment(seen, law.kinematics);
             let update = advance(&law.material, body.points.stress[p], body.points.plastic[p], &strain);
             trial.stress[p] = update.stress;
@@ -79,6 +69,45 @@ fn by_cell<const N: usize>(
         }
     }
     Ok(())
+}
+
+/// Volumes of the points of a cell before and after a step, in units of the body's size.
+pub(super) struct Swelling {
+    before: f64,
+    pub(super) after: f64,
+}
+
+/// Moves the points of a cell with its nodes.
+#[inline(always)]
+pub(super) fn deform<const N: usize>(
+    body: &Body,
+    points: Range<usize>,
+    u: &[[f64; 2]; N],
+    gradients: &[[[f64; 2]; N]],
+    trial: &mut Points,
+) -> Swelling {
+    let (template, unit) = (&*body.template, 1.0 / body.size);
+    let mut swelling = Swelling { before: 0.0, after: 0.0 };
+    for p in points {
+        let f = gradient(u, &gradients[p], unit);
+        trial.gradient[p] = f;
+        swelling.before += template.volumes[p] * body.points.gradient[p].det();
+        swelling.after += template.volumes[p] * f.det();
+    }
+    swelling
+}
+
+impl Swelling {
+    /// What the stress of a point sees of the gradient of a step: with F-bar the volume change is that of the cell.
+    #[inline(always)]
+    pub(super) fn seen(&self, law: &Law, step: Mat2, point: usize) -> Result<Mat2, Inverted> {
+        let jacobian = step.det();
+        if jacobian.is_nan() || jacobian <= LEAST_STEP_JACOBIAN {
+            return Err(Inverted { point });
+        }
+        let mean = || step.scaled((self.after / self.before / jacobian).sqrt());
+        Ok(if law.mean_dilatation { mean() } else { step })
+    }
 }
 
 /// The internal force of the stresses of `body`, no point moved and without the ghost penalty: for four-node cells with the bits that
@@ -128,7 +157,7 @@ pub(super) fn cofactor_stress<T: Real>(weight: T, s: Stress<T>, f: Mat2<T>) -> [
 
 /// F = I + Σ_a u_a ⊗ ∇N_a.
 #[inline]
-pub(super) fn gradient<const N: usize>(u: &[[f64; 2]; N], g: &[[f64; 2]; N], unit: f64) -> Mat2 {
+fn gradient<const N: usize>(u: &[[f64; 2]; N], g: &[[f64; 2]; N], unit: f64) -> Mat2 {
     let mut sum = [0.0; 4];
     for (u, g) in u.iter().zip(g) {
         sum[0] += u[0] * g[0];

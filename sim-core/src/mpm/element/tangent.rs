@@ -5,8 +5,8 @@
 //! one pass over dual numbers. The test gradient is barred as well, which changes nothing in the force (the pressure of
 //! a cell is uniform) and makes the matrix symmetric.
 
-use super::force::gradient;
-use super::{Inverted, LEAST_STEP_JACOBIAN, Law, ghost};
+use super::force::deform;
+use super::{Inverted, Law, ghost};
 use crate::mpm::body::{Body, Points};
 use crate::mpm::constitutive::{advance, increment};
 use crate::mpm::plane::{Mat2, Stress};
@@ -56,30 +56,18 @@ fn by_cell<const N: usize, const M: usize>(
     let mut local = [[0.0; M]; M];
     for (cell, nodes) in cells.iter().enumerate() {
         let points = template.first_point[cell] as usize..template.first_point[cell + 1] as usize;
-        let u = nodes.map(|node| [displacement[2 * node as usize], displacement[2 * node as usize + 1]]);
-        let (mut before, mut after) = (0.0, 0.0);
-        for p in points.clone() {
-            let f = gradient(&u, &gradients[p], unit);
-            trial.gradient[p] = f;
-            before += template.volumes[p] * body.points.gradient[p].det();
-            after += template.volumes[p] * f.det();
-        }
         if points.is_empty() {
             continue;
         }
+        let u = nodes.map(|node| [displacement[2 * node as usize], displacement[2 * node as usize + 1]]);
+        let swelling = deform(body, points.clone(), &u, gradients, trial);
         let mut sum = [0.0; M];
         // ⟨tr δL⟩ = mean · δu, and the coupling vectors of the barred gradient
         let (mut mean, mut coupling, mut dilatation) = ([0.0; M], [0.0; M], 0.0);
         local.iter_mut().for_each(|row| row.fill(0.0));
         for p in points {
             let now = trial.gradient[p];
-            let step = now.dot(body.points.gradient[p].inverse());
-            let jacobian = step.det();
-            if jacobian.is_nan() || jacobian <= LEAST_STEP_JACOBIAN {
-                return Err(Inverted { point: p });
-            }
-            let seen =
-                if law.mean_dilatation { step.scaled((after / before / jacobian).sqrt()) } else { step };
+            let seen = swelling.seen(law, now.dot(body.points.gradient[p].inverse()), p)?;
             let strain = increment(variable(seen), law.kinematics);
             let update = advance(
                 &law.material,
@@ -121,7 +109,7 @@ fn by_cell<const N: usize, const M: usize>(
             accumulate(&mut local, &g, &total, volume);
         }
         if law.mean_dilatation {
-            let volume = after * area;
+            let volume = swelling.after * area;
             mean.iter_mut().for_each(|one| *one /= volume);
             for r in 0..M {
                 for c in 0..=r {

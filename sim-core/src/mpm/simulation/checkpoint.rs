@@ -12,7 +12,7 @@ use crate::mpm::plane::{Mat2, Stress};
 use crate::mpm::updated::{self, Cloud};
 use crate::mpm::world::{Effort, Energies, World};
 
-const MAGIC: &[u8; 8] = b"TAMPMPM3";
+const MAGIC: &[u8; 8] = b"TAMPMPM4";
 const DIGEST: usize = 32;
 
 #[derive(Serialize, Deserialize)]

@@ -1,5 +1,7 @@
 //! Four material points per cell, with the volume that their quarter of the cell has inside the body.
 
+use super::Spread;
+
 /// Material points of an undeformed body.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Fill {
@@ -7,6 +9,20 @@ pub struct Fill {
     pub positions: Vec<[f64; 2]>,
     /// Volumes (areas per unit thickness).
     pub volumes: Vec<f64>,
+    /// Second moments over the area of what each point stands for, about the point.
+    pub spreads: Vec<Spread>,
+}
+
+impl Fill {
+    /// The same points in another order.
+    #[must_use]
+    pub fn permuted(&self, order: &[usize]) -> Self {
+        Self {
+            positions: order.iter().map(|&p| self.positions[p]).collect(),
+            volumes: order.iter().map(|&p| self.volumes[p]).collect(),
+            spreads: order.iter().map(|&p| self.spreads[p]).collect(),
+        }
+    }
 }
 
 /// Strips across a quarter cell that is cut by the outline.
@@ -31,10 +47,11 @@ pub fn disc(centre: [f64; 2], radius: f64, spacing: f64) -> Fill {
     for j in range(1).0..range(1).1 {
         for i in range(0).0..range(0).1 {
             let low = [half * f64::from(i) - centre[0], half * f64::from(j) - centre[1]];
-            let (area, at) = inside(low, half, radius);
+            let (area, at, spread) = inside(low, half, radius);
             if area > SLIVER * half * half {
                 fill.positions.push([centre[0] + at[0], centre[1] + at[1]]);
                 fill.volumes.push(area);
+                fill.spreads.push(spread);
             }
         }
     }
@@ -43,13 +60,13 @@ pub fn disc(centre: [f64; 2], radius: f64, spacing: f64) -> Fill {
     fill
 }
 
-/// Area and centroid of the part of a square inside a circle round the origin.
-fn inside(low: [f64; 2], side: f64, radius: f64) -> (f64, [f64; 2]) {
+/// Area, centroid and second moments of the part of a square inside a circle round the origin.
+fn inside(low: [f64; 2], side: f64, radius: f64) -> (f64, [f64; 2], Spread) {
     let corner = |i: usize, j: usize| libm::hypot(low[0] + i as f64 * side, low[1] + j as f64 * side);
     if [(0, 0), (0, 1), (1, 0), (1, 1)].into_iter().all(|(i, j)| corner(i, j) <= radius) {
-        return (side * side, [low[0] + 0.5 * side, low[1] + 0.5 * side]);
+        return (side * side, [low[0] + 0.5 * side, low[1] + 0.5 * side], square(side));
     }
-    let (mut area, mut moment) = (0.0, [0.0; 2]);
+    let (mut area, mut moment, mut second) = (0.0, [0.0; 2], [0.0; 3]);
     let width = side / STRIPS as f64;
     for k in 0..STRIPS {
         let x = low[0] + (k as f64 + 0.5) * width;
@@ -60,9 +77,23 @@ fn inside(low: [f64; 2], side: f64, radius: f64) -> (f64, [f64; 2]) {
             area += strip;
             moment[0] += strip * x;
             moment[1] += strip * 0.5 * (from + to);
+            second[0] += strip * (x * x + width * width / 12.0);
+            second[1] += strip * x * 0.5 * (from + to);
+            second[2] += strip * (from * from + from * to + to * to) / 3.0;
         }
     }
-    if area > 0.0 { (area, moment.map(|one| one / area)) } else { (0.0, [0.0; 2]) }
+    if area > 0.0 {
+        let [x, y] = moment.map(|one| one / area);
+        let [xx, xy, yy] = second.map(|one| one / area);
+        (area, [x, y], [xx - x * x, xy - x * y, yy - y * y])
+    } else {
+        (0.0, [0.0; 2], [0.0; 3])
+    }
+}
+
+/// Second moments of a square.
+fn square(side: f64) -> Spread {
+    [side * side / 12.0, 0.0, side * side / 12.0]
 }
 
 /// A rectangle of whole cells, its corners on nodes.
@@ -75,6 +106,7 @@ pub fn block(low: [i32; 2], cells: [i32; 2], spacing: f64) -> Fill {
             fill.positions
                 .push([spacing * (at[0] + 0.5 * f64::from(i)), spacing * (at[1] + 0.5 * f64::from(j))]);
             fill.volumes.push(0.25 * spacing * spacing);
+            fill.spreads.push(square(0.5 * spacing));
         }
     }
     fill
@@ -115,10 +147,17 @@ mod tests {
     #[test]
     fn a_cut_quarter_has_the_area_and_the_centroid_inside() {
         // a quarter circle of radius 1 in its square: π/4 and 4/(3π)
-        let (area, at) = inside([0.0, 0.0], 1.0, 1.0);
+        let (area, at, spread) = inside([0.0, 0.0], 1.0, 1.0);
         assert!((area / std::f64::consts::FRAC_PI_4 - 1.0).abs() < 1e-3, "{area}");
         let exact = 4.0 / (3.0 * std::f64::consts::PI);
         assert!((at[0] / exact - 1.0).abs() < 1e-3 && (at[1] / exact - 1.0).abs() < 1e-3, "{at:?}");
+        // ∫ x² = π/16 and ∫ x y = 1/8 over the quarter circle
+        let about = [0.25 - exact * exact, 0.5 / std::f64::consts::PI - exact * exact];
+        assert!(
+            (spread[0] / about[0] - 1.0).abs() < 3e-3 && (spread[2] / about[0] - 1.0).abs() < 3e-3,
+            "{spread:?}"
+        );
+        assert!((spread[1] / about[1] - 1.0).abs() < 1e-2, "{spread:?}");
         assert_eq!(inside([0.8, 0.8], 1.0, 1.0).0, 0.0);
     }
 
@@ -134,9 +173,10 @@ mod tests {
             let first = [0, 1].map(|axis| sum(&|x| x[axis] - centre[axis]));
             // 75 cut quarters of mean area (h/2)²/2, each right to 1e-3, at a distance of 1/2
             assert!(first.iter().all(|moment| moment.abs() < 3.3e-5), "{first:?}");
-            // ∫ x² = π R⁴/4, to the second moment of a quarter cell
+            // ∫ x² = π R⁴/4, with the moments of what each point stands for
             let second = sum(&|x| (x[0] - centre[0]) * (x[0] - centre[0]));
-            assert!((second / (area / 16.0) - 1.0).abs() < 0.02, "{second}");
+            let own: f64 = fill.spreads.iter().zip(&fill.volumes).map(|(spread, v)| v * spread[0]).sum();
+            assert!(((second + own) / (area / 16.0) - 1.0).abs() < 5e-4, "{second} {own}");
         }
     }
 }

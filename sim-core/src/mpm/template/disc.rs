@@ -37,17 +37,16 @@ pub fn symmetric_cubic_disc(across: usize) -> Template {
 fn gridded(across: usize, turn: f64) -> Template {
     assert!(across >= 2 && across.is_multiple_of(2), "cells across the diameter: even, at least 2");
     let spacing = 2.0 / across as f64;
-    let functions::Fill { positions, volumes } = functions::disc([0.0; 2], 1.0, spacing);
-    let order = cell_order(&positions, spacing);
-    let points: Vec<[f64; 2]> = order.iter().map(|&p| positions[p]).collect();
-    let volumes: Vec<f64> = order.iter().map(|&p| volumes[p]).collect();
+    let fill = functions::disc([0.0; 2], 1.0, spacing);
+    let fill = fill.permuted(&cell_order(&fill.positions, spacing));
     let markers = functions::circle([0.0; 2], 1.0, spacing, turn);
     let scatter = Scatter {
         spacing,
         origin: [0.0; 2],
         size: 1.0,
-        points: &points,
-        volumes: &volumes,
+        points: &fill.positions,
+        volumes: &fill.volumes,
+        spreads: &fill.spreads,
         markers: &markers,
     };
     spline(&scatter, &Reach::All)

@@ -1,7 +1,7 @@
 //! A body on a regular grid with cubic splines: from points and markers to cells, functions and weak nodes.
 
 use super::{Elimination, Raw, Template};
-use crate::mpm::spline::{cell_of, functions};
+use crate::mpm::spline::{Spread, cell_of, functions, mean_gradients};
 
 /// Nodes with less volume than this share of a cell, Σ_p N_i V_p < 0.3 h², are weak: hardly any point holds them.
 const WEAK: f64 = 0.3;
@@ -18,6 +18,8 @@ pub struct Scatter<'a> {
     pub points: &'a [[f64; 2]],
     /// Their volumes.
     pub volumes: &'a [f64],
+    /// Second moments of what they stand for.
+    pub spreads: &'a [Spread],
     /// Outline markers.
     pub markers: &'a [[f64; 2]],
 }
@@ -69,7 +71,7 @@ fn support([i, j]: [i32; 2]) -> [[i32; 2]; 16] {
 /// The discretisation of a body with cubic splines.
 #[must_use]
 pub fn spline(scatter: &Scatter, reach: &Reach) -> Template {
-    let Scatter { spacing, origin, size, points, volumes, markers } = *scatter;
+    let Scatter { spacing, origin, size, points, volumes, spreads, markers } = *scatter;
     let grid = nodes(scatter);
     let place = |at: [i32; 2]| {
         let found = grid.binary_search_by_key(&swapped(at), |&node| swapped(node));
@@ -82,8 +84,8 @@ pub fn spline(scatter: &Scatter, reach: &Reach) -> Template {
     let mut next = 0;
     for &cell in &occupied {
         while next < points.len() && cell_of(points[next], spacing) == cell {
-            let (_, n, g) = functions(points[next], spacing);
-            values.extend(n);
+            values.extend(functions(points[next], spacing).1);
+            let g = mean_gradients(points[next], spreads[next], spacing);
             gradients.extend(g.map(|g| [g[0] * size, g[1] * size]));
             next += 1;
         }

@@ -69,12 +69,22 @@ fn plastic(
         Constants { f_e: elastic.f_e, f_g: elastic.f_g, alpha: alpha.unwrap_or(2.5), ..at_jamming(phi_c) };
     let apply = |t: &[f64]| Constants { f_ep: t[0], ..base };
     let data = data(&states);
-    let fit = least_squares(WHAT, &data, &["f_ep"], &[1.2], Sigma::Relative, |index, t| {
-        let state = states[index_of(index)];
-        blend(&apply(t), curve, state)
-    })?;
+    let stress = |index: f64, t: &[f64]| blend(&apply(t), curve, states[index_of(index)]);
+    let fit = least_squares(WHAT, &data, &["f_ep"], &[1.2], Sigma::Relative, stress)?;
+    // f_ep → ∞ leaves the least stress that (10) can give; data that it describes as well do not bound f_ep
+    let square = |d: &Datum| ((d.y - stress(d.x, &[f64::INFINITY])) / d.sigma).powi(2);
+    let excess = data.iter().map(square).sum::<f64>() - fit.reduced_chi2 * count(fit.degrees_of_freedom);
+    if excess <= LIMIT * fit.reduced_chi2 {
+        return Err(FitError::underdetermined(
+            WHAT,
+            "any large f_ep describes the data as well: they lie at or below f_p σ_y and no hardening is left to fit",
+        ));
+    }
     Ok((apply(&fit.values()), fit))
 }
+
+/// χ² over the reduced one by which an unbounded f_ep must be worse: the 95 % point of χ² with one degree of freedom.
+const LIMIT: f64 = 3.84;
 
 /// (10) with the measured plastic share where the state has one.
 fn blend(constants: &Constants, curve: &PlasticCurve, state: &PlasticState) -> f64 {

@@ -80,6 +80,21 @@ fn plastic_constants_follow_with_the_elastic_ones_held() {
     }
 }
 
+#[test]
+fn stresses_below_the_yield_term_do_not_fix_the_plastic_exponent() {
+    let mut soft = run(Some(1e6), 0.0, 1);
+    soft.states.iter_mut().for_each(|state| state.sigma *= 0.5);
+    // nor does what lies within noise ten times the hardening
+    let noisy = PlasticCurve { seed: 2, ..run(Some(1e6), 3e5, 1) };
+    let found = compaction(&[run(None, 0.0, 2), soft, noisy], &CompactionOptions::default()).unwrap();
+    for curve in &found.curves[1..] {
+        let reason = curve.fit.reason().unwrap();
+        assert!(reason.contains("f_ep"), "{reason}");
+    }
+    // α and the model with the paper's constants are there all the same
+    assert!(found.curves[1].alpha.value().is_some() && !found.curves[1].model.is_empty());
+}
+
 /// The plastic curves leave the elastic one where f_p (σ_e − σ_p) exceeds a tenth of σ_e.
 #[test]
 fn the_stress_where_curves_part_is_found() {
