@@ -65,7 +65,9 @@ impl Model {
         match self {
             // 2, spheres: the time step follows the network alone, and may be larger than 0.1 τ.
             // 2, discs: tangential force in the plane as one number; exact sum of the stress.
-            Self::CohesiveSpheres | Self::CohesiveDiscs => 2,
+            // 3, both: 1/d as d · (1/d²), slip and lever arms with fewer roundings; an even number of chunks.
+            // 3, discs: cohesionless discs start as a gas at the first pressure.
+            Self::CohesiveSpheres | Self::CohesiveDiscs => 3,
             // 2: over-relaxed contact sweeps, a step begins with the last halving.
             // 3: iterates are accelerated, factors renewed by body; splines see their gradients in the mean over what a
             // point stands for.

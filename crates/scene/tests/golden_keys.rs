@@ -8,5 +8,5 @@ use serde_json::json;
 fn keys_do_not_change_by_accident() {
     let spheres =
         json!({"model": "cohesive_spheres", "n": 2207, "p": 1e5, "sigma_e": 1e10, "sigma_c": 3e6, "seed": 1});
-    assert_eq!(Scene::from_json(&spheres).unwrap().key().as_str(), "c1e91db93595f72ef98fb969d2c04144");
+    assert_eq!(Scene::from_json(&spheres).unwrap().key().as_str(), "8cbe5b707eb448d1c26bd1dca281c330");
 }

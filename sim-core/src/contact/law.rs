@@ -169,7 +169,10 @@ where
         let slide = if T::NEEDS_SPIN {
             // Lever arms reach the middle of the overlap: R − ov/2, with the overlap of t_n − dt/2.
             let quarter = half.mul(half_dt.neg_mul_add(approach, overlap));
-            let rim = motion.rim.sub_scaled(quarter, motion.spin_sum);
+            let rim = match motion.rim {
+                None => motion.spin_sum.scale(geometry.radius_a.sub(quarter)),
+                Some(rim) => rim.sub_scaled(quarter, motion.spin_sum),
+            };
             let spin_sum = motion.spin_sum;
             let passing = Passing { normal, velocity, approach, across, spin_sum, half_dt, dt };
             MaybeUninit::new(S::slide(&passing, rim))

@@ -34,6 +34,17 @@ fn cross<L: Lane>(a: V3<L>, b: V3<L>) -> V3<L> {
     V3([az.neg_mul_add(by, ay.mul(bz)), ax.neg_mul_add(bz, az.mul(bx)), ay.neg_mul_add(bx, ax.mul(by))])
 }
 
+/// start − a × b.
+#[inline(always)]
+fn sub_cross<L: Lane>(start: V3<L>, a: V3<L>, b: V3<L>) -> V3<L> {
+    let ([x, y, z], [ax, ay, az], [bx, by, bz]) = (start.0, a.0, b.0);
+    V3([
+        az.mul_add(by, ay.neg_mul_add(bz, x)),
+        ax.mul_add(bz, az.neg_mul_add(bx, y)),
+        ay.mul_add(bx, ax.neg_mul_add(by, z)),
+    ])
+}
+
 impl Space for Spatial {
     const DIMENSION: usize = 3;
     type Vector<L: Lane> = V3<L>;
@@ -69,11 +80,11 @@ impl Space for Spatial {
     }
     #[inline(always)]
     fn slide<L: Lane>(passing: &Passing<Self, L>, rim: V3<L>) -> SpatialSlide<L> {
-        let Passing { normal, velocity, approach, across: normal_rate, spin_sum, half_dt, dt } = *passing;
+        let Passing { normal, velocity, approach, across: normal_rate, spin_sum, half_dt, .. } = *passing;
         let normal_between = normal.sub_scaled(half_dt, normal_rate);
         let slip = velocity.add_scaled(approach, normal_between);
-        let slip = slip.add_scaled(L::splat(-1.0), cross(rim, normal_between));
-        SpatialSlide { slip, normal_rate, turn: spin_sum.scale(L::splat(0.5)).dot(normal).mul(dt) }
+        let slip = sub_cross(slip, rim, normal_between);
+        SpatialSlide { slip, normal_rate, turn: spin_sum.dot(normal).mul(half_dt) }
     }
     #[inline(always)]
     fn contact_force<L: Lane>(normal: V3<L>, push: L, shear: V3<L>) -> V3<L> {

@@ -10,10 +10,11 @@ use super::{ContactList, Force, WallList};
 /// Particles per chunk aimed at. Part of the definition of the result (order of sums): changing it changes bits.
 const CHUNK: usize = 2300;
 
-/// First particle of every chunk, and the end.
+/// First particle of every chunk, and the end: one chunk, or an even number of them, so that two threads have as much to
+/// do each.
 #[must_use]
 pub fn chunk_bounds(particles: usize) -> Vec<usize> {
-    let chunks = (particles / CHUNK).max(1);
+    let chunks = if particles < 2 * CHUNK { 1 } else { 2 * ((particles + CHUNK) / (2 * CHUNK)) };
     (0..=chunks).map(|c| particles * c / chunks).collect()
 }
 

@@ -168,7 +168,7 @@ fn tangential_spring_turns_with_a_rigidly_rotating_pair() {
                     };
                     let motion = PairMotion::<Spatial, f64> {
                         velocity: V3(std::array::from_fn(|k| (now[k] - before[k]) / dt)),
-                        rim: spin.scale(2.0 * radius),
+                        rim: None,
                         spin_sum: spin.scale(2.0),
                         spin_difference: V3([0.0; 3]),
                     };

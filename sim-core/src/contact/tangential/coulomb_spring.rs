@@ -50,7 +50,7 @@ impl Tangential<Spatial> for CoulombSpring {
         let grown = turned.add_scaled(dt, slide.slip);
         // The normal turned by dn: ξ loses its part along the new normal and gains half of it along dn.
         let along = grown.dot(normal);
-        let half_turn = along.mul(dt).mul(L::splat(0.5));
+        let half_turn = along.mul(dt.mul(L::splat(0.5)));
         let spring = grown.sub_scaled(along, normal).add_scaled(half_turn, slide.normal_rate);
         // An open contact has no spring, so it cannot slide either.
         let spring = spring.keep(active);

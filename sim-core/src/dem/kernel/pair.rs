@@ -100,8 +100,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         let separation = S::vector(unsafe { L::difference::<0>(self.bodies, a, b) });
         let velocity = S::vector(unsafe { L::difference::<1>(self.bodies, a, b) });
         let (separation, velocity) = self.boundary.nearest(separation, velocity);
-        let distance = separation.dot(separation).sqrt();
-        let inverse_distance = L::splat(1.0).div(distance);
+        let square = separation.dot(separation);
+        // Root and quotient side by side rather than one after the other.
+        let (distance, inverse_square) = (square.sqrt(), L::splat(1.0).div(square));
+        let inverse_distance = distance.mul(inverse_square);
         let normal = separation.scale(inverse_distance);
         // SAFETY: see above.
         let [radius_a, radius_b, _] = unsafe { self.grains.pair::<L>(constants) };
@@ -155,18 +157,17 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         // SAFETY: `meet` wrote what the conditions ask for; the caller vouches for the constants.
         unsafe {
             let [radius_a, radius_b, root_mass] = self.grains.pair::<L>(constants);
-            let (mut spin_sum, mut rim, mut spin_difference) = (zero, zero, zero);
+            let (mut spin_sum, mut rim, mut spin_difference) = (zero, None, zero);
             if C::NEEDS_SPIN {
                 if G::EQUAL {
                     spin_sum = meeting.spin_sum.assume_init();
-                    rim = spin_sum.scale(radius_a);
                     if C::ROLLS {
                         spin_difference = meeting.spin_difference.assume_init();
                     }
                 } else {
                     let [of_a, of_b] = meeting.own_spins.assume_init();
                     spin_sum = of_a.add(of_b);
-                    rim = of_a.scale(radius_a).add_scaled(radius_b, of_b);
+                    rim = Some(of_a.scale(radius_a).add_scaled(radius_b, of_b));
                     spin_difference = of_b.add_scaled(L::splat(-1.0), of_a);
                 }
             }

@@ -47,11 +47,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         };
         let none: S::Spin<L> = S::Spin::zero();
         let mut motion: PairMotion<S, L> =
-            PairMotion { velocity, rim: none, spin_sum: none, spin_difference: none };
+            PairMotion { velocity, rim: None, spin_sum: none, spin_difference: none };
         if C::NEEDS_SPIN {
             // SAFETY: see above.
             motion.spin_sum = S::spin(unsafe { L::record::<2>(self.bodies, a) });
-            motion.rim = motion.spin_sum.scale(radius);
             motion.spin_difference = none.add_scaled(L::splat(-1.0), motion.spin_sum);
         }
         // SAFETY: see above.
