@@ -1,5 +1,6 @@
 //! When a run may end, and on what evidence: pure functions of what was sampled.
 
+pub(crate) mod deformation;
 pub(crate) mod estimate;
 pub(crate) mod evidence;
 pub(crate) mod guard;

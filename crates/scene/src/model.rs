@@ -67,6 +67,8 @@ impl Model {
             // 2, discs: tangential force in the plane as one number; exact sum of the stress.
             // 3, both: 1/d as d · (1/d²), slip and lever arms with fewer roundings; an even number of chunks.
             // 3, discs: cohesionless discs start as a gas at the first pressure.
+            // 3, spheres: `evidence` asks for the motion that deforms the network and for the trend of Z±; what carries no
+            // load is not settled.
             Self::CohesiveSpheres | Self::CohesiveDiscs => 3,
             // 2: over-relaxed contact sweeps, a step begins with the last halving.
             // 3: iterates are accelerated, factors renewed by body; splines see their gradients in the mean over what a

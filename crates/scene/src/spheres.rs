@@ -40,14 +40,17 @@ pub enum Stop {
         /// Largest relative deviation of a wall force from p S [1].
         wall_imbalance: f64,
     },
-    /// Validated equilibrium: settled, and KE/E_el (with or without loose particles) and drift of Z± small.
+    /// Validated equilibrium: settled, hardly any motion that deforms the network, Z± near their limits.
     Evidence {
         /// Largest change of e while the number of steps grows by a quarter [1].
         e_drift: f64,
         /// Largest relative deviation of a wall force from p S [1].
         wall_imbalance: f64,
-        /// Largest kinetic over elastic energy, particles with fewer than four contacts left out [1].
-        ke_over_eel: f64,
+        /// Largest kinetic energy of the motion along the normals between particles with at least four contacts, over the
+        /// elastic energy [1].
+        ke_contacts: f64,
+        /// Largest change that Z+ or Z− still has before it, extrapolated in 1/t [1].
+        z_rest: f64,
     },
     /// The paper's criterion: kinetic over elastic energy of all particles [1].
     KineticEnergy {
@@ -157,10 +160,11 @@ impl Stop {
             Self::Settled { e_drift, wall_imbalance } => {
                 Self::Settled { e_drift: round12(e_drift), wall_imbalance: round12(wall_imbalance) }
             }
-            Self::Evidence { e_drift, wall_imbalance, ke_over_eel } => Self::Evidence {
+            Self::Evidence { e_drift, wall_imbalance, ke_contacts, z_rest } => Self::Evidence {
                 e_drift: round12(e_drift),
                 wall_imbalance: round12(wall_imbalance),
-                ke_over_eel: round12(ke_over_eel),
+                ke_contacts: round12(ke_contacts),
+                z_rest: round12(z_rest),
             },
             Self::KineticEnergy { ke_over_eel } => Self::KineticEnergy { ke_over_eel: round12(ke_over_eel) },
             Self::Steps => Self::Steps,

@@ -37,7 +37,7 @@ const KEYS: [&str; 14] = [
     "max_steps",
     "stop.rule",
 ];
-const COLUMNS: [&str; 30] = [
+const COLUMNS: [&str; 34] = [
     "status",
     "criteria",
     "steps",
@@ -66,6 +66,10 @@ const COLUMNS: [&str; 30] = [
     "wall_imbalance",
     "ke_over_eel",
     "ke_held_over_eel",
+    "ke_contacts_over_eel",
+    "z_rest",
+    "z_plus_limit",
+    "z_minus_limit",
     "unbalanced_force",
     "retries",
 ];
@@ -183,6 +187,7 @@ fn write_series(sheet: &mut Sheet, label: &str, series: &Table) {
         "two_contact_particles",
         "ke",
         "ke_held",
+        "ke_contacts",
         "eel",
         "unbalanced_force",
     ];
@@ -240,7 +245,7 @@ fn main() {
     );
     let mut samples = Sheet::open(
         &PathBuf::from(format!("{out}.series.csv")),
-        "scene,step,t,e,z,z_plus,z_minus,two_contact_particles,ke,ke_held,eel,unbalanced_force,wall_1,wall_2,wall_3,wall_4,wall_5,wall_6",
+        "scene,step,t,e,z,z_plus,z_minus,two_contact_particles,ke,ke_held,ke_contacts,eel,unbalanced_force,wall_1,wall_2,wall_3,wall_4,wall_5,wall_6",
     );
     for point in sweep.points() {
         let label = point.scene.reduce().key().to_string();

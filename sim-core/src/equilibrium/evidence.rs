@@ -7,12 +7,17 @@ use super::sample::Sample;
 
 /// Drift is measured while time grows by this factor: what has become of e in the last fifth of the run.
 pub(crate) const WINDOW: f64 = 1.25;
-/// Largest drift of Z+ or Z− in the window for `equilibrium` under the evidence rule [1].
-pub(crate) const Z_DRIFT: f64 = 0.02;
+/// Unbalanced force on the backbone beyond which nothing counts as settled [1]: what carries no load stands still only
+/// because time was short. Settled packings have 0.01 to 0.3, a gas between light walls 0.7 and more (docs/stability.md).
+const LOADED: f64 = 0.5;
 /// Tolerances that decide the status where the stop rule does not name them.
 pub(crate) const DEFAULT_E_DRIFT: f64 = 2.5e-4;
 /// See [`DEFAULT_E_DRIFT`].
 pub(crate) const DEFAULT_WALL_IMBALANCE: f64 = 0.01;
+/// See [`DEFAULT_E_DRIFT`].
+pub(crate) const DEFAULT_Z_REST: f64 = 0.05;
+/// See [`DEFAULT_E_DRIFT`].
+pub(crate) const DEFAULT_KE_CONTACTS: f64 = 2.0e-6;
 /// The paper's threshold of KE/E_el.
 pub(crate) const DEFAULT_KE: f64 = 2.0e-7;
 
@@ -22,6 +27,8 @@ pub(crate) const DEFAULT_KE: f64 = 2.0e-7;
 pub(crate) struct Evidence {
     /// Largest minus smallest e in the window [1].
     pub(crate) e_drift: Option<f64>,
+    /// Where Z+ and Z− are heading.
+    pub(crate) approach: Option<Approach>,
     /// Larger of |mean of the later half − mean of the earlier half| of the window for Z+ and Z− [1], doubled: the
     /// change over the whole window of a steady drift, with the flicker of contacts near zero force averaged out.
     pub(crate) z_drift: Option<f64>,
@@ -33,8 +40,35 @@ pub(crate) struct Evidence {
     pub(crate) ke_over_eel: Option<f64>,
     /// The same with particles of fewer than four contacts left out of KE [1].
     pub(crate) ke_held_over_eel: Option<f64>,
+    /// Kinetic energy of the motion along the normals between held particles over E_el, mean over the window [1].
+    pub(crate) ke_contacts_over_eel: Option<f64>,
     /// Unbalanced force on the backbone [1].
     pub(crate) unbalanced: f64,
+}
+
+impl Evidence {
+    /// Larger of what Z+ and Z− still have before them, in magnitude [1].
+    pub(crate) fn z_rest(&self) -> Option<f64> {
+        self.approach.map(|z| z.plus.rest.abs().max(z.minus.rest.abs()))
+    }
+}
+
+/// Where Z+ and Z− are heading.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Approach {
+    /// Of Z+.
+    pub(crate) plus: Limit,
+    /// Of Z−.
+    pub(crate) minus: Limit,
+}
+
+/// A quantity that approaches its limit as 1/t.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Limit {
+    /// The limit.
+    pub(crate) limit: f64,
+    /// What it will still gain or lose.
+    pub(crate) rest: f64,
 }
 
 /// Reads the evidence off a series; `moving` says which walls are driven. The series must not be empty.
@@ -58,6 +92,10 @@ pub(crate) fn evidence(samples: &[Sample], moving: [bool; 6]) -> Evidence {
     found.wall_imbalance = Some(imbalance(window, moving));
     let (earlier, later) = window.split_at(window.len() / 2);
     let change = |of: fn(&Sample) -> f64| 2.0 * (mean(later, of) - mean(earlier, of)).abs();
+    found.approach = approach(samples, window);
+    let kinetic =
+        mean(window, |sample| if sample.elastic > 0.0 { sample.deforming / sample.elastic } else { 1.0 });
+    found.ke_contacts_over_eel = ratio(0.0).map(|_| kinetic);
     found.z_drift = Some(change(|sample| sample.z_plus).max(change(|sample| sample.z_minus)));
     found
 }
@@ -69,6 +107,27 @@ fn window(samples: &[Sample]) -> Option<&[Sample]> {
     let first = samples.partition_point(|sample| sample.time < from);
     let window = &samples[first.saturating_sub(1)..];
     (first > 0 && window.len() >= FEWEST).then_some(window)
+}
+
+/// Z+ and Z− extrapolated in 1/t, as they go on rising long after e has settled (docs/accuracy.md): through their means
+/// over the last fifth of the time and over the last fifth of its first half.
+fn approach(samples: &[Sample], late: &[Sample]) -> Option<Approach> {
+    const FEWEST: usize = 2;
+    let now = samples.last()?.time;
+    let half = 0.5 * now;
+    let early = &samples[samples.partition_point(|sample| sample.time < half / WINDOW)
+        ..samples.partition_point(|sample| sample.time <= half)];
+    if early.len() < FEWEST || early[0].time <= 0.0 {
+        return None;
+    }
+    let inverse = |samples: &[Sample]| mean(samples, |sample| 1.0 / sample.time);
+    let (then, lately) = (inverse(early), inverse(late));
+    let limit = |of: fn(&Sample) -> f64| {
+        let value = mean(late, of);
+        let slope = (value - mean(early, of)) / (then - lately);
+        Limit { limit: value + slope * lately, rest: slope / now }
+    };
+    Some(Approach { plus: limit(|sample| sample.z_plus), minus: limit(|sample| sample.z_minus) })
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a window is a few samples")]
@@ -86,9 +145,9 @@ fn imbalance(samples: &[Sample], moving: [bool; 6]) -> f64 {
 /// What a stop rule makes of the evidence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Verdict {
-    /// e stands still and the walls balance their load.
+    /// e stands still, the walls balance their load, and the particles carry it.
     pub(crate) settled: bool,
-    /// Settled, and the energy and Z± stand still as well.
+    /// Settled, hardly any motion deforms the network any more, and Z± are near their limits.
     pub(crate) equilibrium: bool,
     /// The rule of the scene says that the run may end.
     pub(crate) stop: bool,
@@ -101,12 +160,14 @@ pub(crate) struct Fired {
     pub(crate) e_drift: bool,
     /// Balance of the walls.
     pub(crate) wall_imbalance: bool,
+    /// The backbone carries its load.
+    pub(crate) loaded: bool,
     /// KE/E_el of all particles.
     pub(crate) ke: bool,
-    /// KE/E_el of held particles.
-    pub(crate) ke_held: bool,
-    /// Drift of Z±.
-    pub(crate) z_drift: bool,
+    /// The same of the motion that deforms the network.
+    pub(crate) ke_contacts: bool,
+    /// What Z± have before them.
+    pub(crate) z_rest: bool,
 }
 
 impl Fired {
@@ -115,38 +176,59 @@ impl Fired {
         let all = [
             (self.e_drift, "e_drift"),
             (self.wall_imbalance, "wall_imbalance"),
+            (self.loaded, "loaded"),
             (self.ke, "ke"),
-            (self.ke_held, "ke_held"),
-            (self.z_drift, "z_drift"),
+            (self.ke_contacts, "ke_contacts"),
+            (self.z_rest, "z_rest"),
         ];
         let names: Vec<&str> = all.into_iter().filter_map(|(fired, name)| fired.then_some(name)).collect();
         if names.is_empty() { "none".to_owned() } else { names.join("+") }
     }
 }
 
-/// The tolerances of a stop rule, defaults where it names none: (e drift, wall imbalance, KE/E_el).
-pub(crate) fn tolerances(stop: &Stop) -> (f64, f64, f64) {
+/// Tolerances [1].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Tolerances {
+    e_drift: f64,
+    wall_imbalance: f64,
+    ke: f64,
+    ke_contacts: f64,
+    z_rest: f64,
+}
+
+/// The tolerances of a stop rule, defaults where it names none.
+pub(crate) fn tolerances(stop: &Stop) -> Tolerances {
+    let defaults = Tolerances {
+        e_drift: DEFAULT_E_DRIFT,
+        wall_imbalance: DEFAULT_WALL_IMBALANCE,
+        ke: DEFAULT_KE,
+        ke_contacts: DEFAULT_KE_CONTACTS,
+        z_rest: DEFAULT_Z_REST,
+    };
     match *stop {
-        Stop::Settled { e_drift, wall_imbalance } => (e_drift, wall_imbalance, DEFAULT_KE),
-        Stop::Evidence { e_drift, wall_imbalance, ke_over_eel } => (e_drift, wall_imbalance, ke_over_eel),
-        Stop::KineticEnergy { ke_over_eel } => (DEFAULT_E_DRIFT, DEFAULT_WALL_IMBALANCE, ke_over_eel),
-        Stop::Steps => (DEFAULT_E_DRIFT, DEFAULT_WALL_IMBALANCE, DEFAULT_KE),
+        Stop::Settled { e_drift, wall_imbalance } => Tolerances { e_drift, wall_imbalance, ..defaults },
+        Stop::Evidence { e_drift, wall_imbalance, ke_contacts, z_rest } => {
+            Tolerances { e_drift, wall_imbalance, ke_contacts, z_rest, ..defaults }
+        }
+        Stop::KineticEnergy { ke_over_eel } => Tolerances { ke: ke_over_eel, ..defaults },
+        Stop::Steps => defaults,
     }
 }
 
 /// Judges the evidence by a stop rule.
 pub(crate) fn judge(stop: &Stop, found: &Evidence) -> (Verdict, Fired) {
-    let (e_drift, wall_imbalance, ke) = tolerances(stop);
+    let tolerances = tolerances(stop);
     let within = |value: Option<f64>, tolerance: f64| value.is_some_and(|value| value <= tolerance);
     let fired = Fired {
-        e_drift: within(found.e_drift, e_drift),
-        wall_imbalance: within(found.wall_imbalance, wall_imbalance),
-        ke: within(found.ke_over_eel, ke),
-        ke_held: within(found.ke_held_over_eel, ke),
-        z_drift: within(found.z_drift, Z_DRIFT),
+        e_drift: within(found.e_drift, tolerances.e_drift),
+        wall_imbalance: within(found.wall_imbalance, tolerances.wall_imbalance),
+        loaded: within(Some(found.unbalanced), LOADED),
+        ke: within(found.ke_over_eel, tolerances.ke),
+        ke_contacts: within(found.ke_contacts_over_eel, tolerances.ke_contacts),
+        z_rest: within(found.z_rest(), tolerances.z_rest),
     };
-    let settled = fired.e_drift && fired.wall_imbalance;
-    let equilibrium = settled && fired.z_drift && (fired.ke || fired.ke_held);
+    let settled = fired.e_drift && fired.wall_imbalance && fired.loaded;
+    let equilibrium = settled && fired.z_rest && fired.ke_contacts;
     // Taken alone the paper's ratio is met before anything happens when adhesion stores more energy in the first
     // pairs than the agitation holds: the walls must carry at least most of their load.
     let loaded = within(found.wall_imbalance, 0.1);
@@ -164,7 +246,8 @@ mod tests {
     use super::*;
 
     const ALL: [bool; 6] = [true; 6];
-    const RULE: Stop = Stop::Evidence { e_drift: 1e-3, wall_imbalance: 0.01, ke_over_eel: 2e-7 };
+    const RULE: Stop =
+        Stop::Evidence { e_drift: 1e-3, wall_imbalance: 0.01, ke_contacts: 2e-6, z_rest: 0.05 };
 
     fn series(e: impl Fn(f64) -> f64, force: impl Fn(f64) -> f64, kinetic: f64) -> Vec<Sample> {
         (0..200_u32)
@@ -180,7 +263,8 @@ mod tests {
                     z_minus: 1.5 - 0.01 * f64::from(k % 2),
                     with_two: 10,
                     kinetic,
-                    kinetic_held: kinetic * 1e-3,
+                    kinetic_held: kinetic * 1e-1,
+                    deforming: kinetic * 1e-3,
                     elastic: 1.0,
                     unbalanced: 1e-5,
                     wall_forces: [force(time); 6],
@@ -202,19 +286,55 @@ mod tests {
     fn each_criterion_can_hold_the_run_back() {
         let good = evidence(&series(|_| 1.2, |_| 2.0, 1e-9), ALL);
         assert!(judge(&RULE, &good).0.stop);
+        let heading = good.approach.unwrap();
         for bad in [
             Evidence { e_drift: Some(2e-3), ..good },
             Evidence { wall_imbalance: Some(0.02), ..good },
-            Evidence { ke_over_eel: Some(1e-6), ke_held_over_eel: Some(1e-6), ..good },
-            Evidence { z_drift: Some(0.1), ..good },
+            Evidence { ke_contacts_over_eel: Some(1e-5), ..good },
+            Evidence {
+                approach: Some(Approach { minus: Limit { limit: 1.6, rest: 0.1 }, ..heading }),
+                ..good
+            },
+            Evidence {
+                approach: Some(Approach { plus: Limit { limit: 2.4, rest: -0.1 }, ..heading }),
+                ..good
+            },
+            Evidence { approach: None, ..good },
             Evidence { e_drift: None, ..good },
+            Evidence { unbalanced: 0.7, ..good },
         ] {
             assert!(!judge(&RULE, &bad).0.stop, "{bad:?}");
         }
-        let flying = Evidence { ke_over_eel: Some(1e-2), ..good };
+        let flying = Evidence { ke_over_eel: Some(1e-2), ke_held_over_eel: Some(1e-5), ..good };
         let (verdict, fired) = judge(&RULE, &flying);
-        assert!(verdict.stop, "loose particles alone do not hold it back");
-        assert_eq!(fired.names(), "e_drift+wall_imbalance+ke_held+z_drift");
+        assert!(verdict.stop, "motion that deforms nothing does not hold it back");
+        assert_eq!(fired.names(), "e_drift+wall_imbalance+loaded+ke_contacts+z_rest");
+    }
+
+    #[test]
+    fn a_limit_approached_as_one_over_time_is_found_exactly() {
+        let mut samples = series(|_| 1.2, |_| 2.0, 1e-9);
+        for sample in &mut samples[1..] {
+            sample.z_plus = 2.5 - 3.0 / sample.time;
+            sample.z_minus = 1.5 + 7.0 / sample.time;
+        }
+        let found = evidence(&samples, ALL);
+        let heading = found.approach.unwrap();
+        assert!((heading.plus.limit - 2.5).abs() < 1e-12 && (heading.minus.limit - 1.5).abs() < 1e-12);
+        assert!((heading.plus.rest - 3.0 / 199.0).abs() < 1e-12);
+        assert!((found.z_rest().unwrap() - 7.0 / 199.0).abs() < 1e-12);
+        assert_eq!(evidence(&samples[..5], ALL).approach, None, "one sample in the first half");
+    }
+
+    #[test]
+    fn what_carries_no_load_is_not_settled() {
+        let mut samples = series(|_| 1.7, |_| 2.0, 0.0);
+        for sample in &mut samples {
+            sample.unbalanced = 0.8;
+        }
+        let (verdict, fired) =
+            judge(&Stop::Settled { e_drift: 1e-3, wall_imbalance: 0.01 }, &evidence(&samples, ALL));
+        assert!(!verdict.settled && !verdict.stop, "{}", fired.names());
     }
 
     #[test]

@@ -2,11 +2,12 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::deformation::deforming_energy;
 use crate::dem::View;
 use crate::observables::coordination::{Coordination, coordination};
 use crate::observables::void_ratio::void_ratio;
 
-/// Contacts from which on a particle counts as held in the kinetic-energy criterion; with three or fewer it can
+/// Contacts from which on a particle counts as held in the kinetic energies of the evidence and for the drag of rolling kicks; with three or fewer it can
 /// vibrate or roll freely.
 pub(crate) const HELD_CONTACTS: u32 = 4;
 
@@ -33,6 +34,8 @@ pub(crate) struct Sample {
     pub(crate) kinetic: f64,
     /// Kinetic energy of particles with at least four contacts [k_n d²].
     pub(crate) kinetic_held: f64,
+    /// Kinetic energy of the motion along the normals between held particles [k_n d²].
+    pub(crate) deforming: f64,
     /// Elastic energy [k_n d²].
     pub(crate) elastic: f64,
     /// Mean unbalanced force on backbone particles over the mean contact force [1]; 0 without contacts.
@@ -58,6 +61,7 @@ impl Sample {
             with_two: counted.with_two,
             kinetic: view.energies.kinetic(),
             kinetic_held: kinetic_held(view, &counted),
+            deforming: deforming_energy(view, &counted.contacts),
             elastic: view.energies.elastic(),
             unbalanced: unbalanced(view, &counted),
             wall_forces: [0, 1, 2, 3, 4, 5].map(|wall| view.walls[wall].force),

@@ -174,6 +174,11 @@ fn evidence_columns(record: &mut Row, scene: &ReducedSpheres, memory: &Memory) -
         ("wall_imbalance_now", Some(found.wall_imbalance_now)),
         ("ke_over_eel", found.ke_over_eel),
         ("ke_held_over_eel", found.ke_held_over_eel),
+        ("ke_contacts_over_eel", found.ke_contacts_over_eel),
+        ("z_rest", found.z_rest()),
+        ("z_limit", found.approach.map(|z| z.plus.limit + z.minus.limit)),
+        ("z_plus_limit", found.approach.map(|z| z.plus.limit)),
+        ("z_minus_limit", found.approach.map(|z| z.minus.limit)),
         ("unbalanced_force", Some(found.unbalanced)),
     ];
     for (name, value) in numbers {

@@ -70,3 +70,21 @@ fn a_time_step_above_the_limit_of_the_network_is_lowered_and_says_why() {
         assert!((e - expected).abs() < 0.04, "dt {dt}: {e} for {expected}");
     }
 }
+
+#[test]
+fn a_gas_between_light_walls_is_not_settled() {
+    // walls of 0.01 particle masses allow a time step of 2e-5 τ: e cannot have moved, and the walls carry p at once
+    for stop in ["evidence", "settled"] {
+        let keys = json!({
+            "n": 200, "seed": 1, "p": 1e6, "sigma_e": 1e9, "sigma_c": 3e6, "mw": 0.01, "max_steps": 3000, "stop": stop,
+        });
+        let outcome = run(&scene(&keys), &Options::default()).unwrap();
+        assert_eq!(
+            outcome.record.text("status"),
+            Some("step_limit"),
+            "{stop}: {:?}",
+            outcome.record.text("criteria")
+        );
+        assert!(outcome.record.real("z").unwrap() < 0.1, "still a gas");
+    }
+}

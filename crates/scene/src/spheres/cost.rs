@@ -26,7 +26,7 @@ impl ReducedSpheres {
         match (self.approach, self.stop) {
             (Approach::RollingKicks, _) => (4.5, 20.0),
             (Approach::Natural, Stop::Settled { .. }) => (2.0, 20.0),
-            (Approach::Natural, Stop::Evidence { .. }) => (10.0, 20.0),
+            (Approach::Natural, Stop::Evidence { .. }) => (6.0, 20.0),
             (Approach::Natural, Stop::KineticEnergy { .. }) => (40.0, 60.0),
             (Approach::Natural, Stop::Steps) => (20.0, 20.0),
         }

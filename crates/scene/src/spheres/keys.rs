@@ -36,6 +36,25 @@ const KE_OVER_EEL: Key = Key {
     source: "2024, section 2: 2e-7",
 };
 
+const KE_CONTACTS: Key = Key {
+    name: "ke_contacts",
+    unit: "1",
+    domain: Domain::Real(Bound::Excluding(0.0), Bound::Including(1.0)),
+    absent: Absent::Default("2e-6"),
+    meaning: "largest kinetic energy of the motion along normals between particles with four or more contacts, over the \
+              elastic energy",
+    source: OURS,
+};
+
+const Z_REST: Key = Key {
+    name: "z_rest",
+    unit: "1",
+    domain: Domain::Real(Bound::Excluding(0.0), Bound::Including(10.0)),
+    absent: Absent::Default("0.05"),
+    meaning: "largest change that Z+ or Z- still has before it, extrapolated in 1/t",
+    source: OURS,
+};
+
 const STOPS: &[Variant] = &[
     Variant {
         name: "settled",
@@ -44,9 +63,9 @@ const STOPS: &[Variant] = &[
     },
     Variant {
         name: "evidence",
-        meaning: "validated equilibrium: settled, kinetic energy small (particles with fewer than four contacts left \
-                  out), drift of Z+ and Z- small",
-        keys: &[E_DRIFT, WALL_IMBALANCE, KE_OVER_EEL],
+        meaning: "validated equilibrium: settled, hardly any motion that deforms the network, Z+ and Z- near the limits \
+                  that their trend has",
+        keys: &[E_DRIFT, WALL_IMBALANCE, KE_CONTACTS, Z_REST],
     },
     Variant {
         name: "kinetic_energy",

@@ -60,6 +60,27 @@ for ns in map(float, sys.argv[1:] or ["30"]):
     print(f"{ns:g} ns per particle-step: {hours:.1f} h to settled e on {CORES} cores; longest run {counts[0] * math.exp(middle) * N * ns * 1e-9 / 3600:.1f} h")
 
 
+ended = {key(r): r for r in read(HERE / "evidence-3.csv") if r["mark"] == "end"}
+both = [(float(ended[key(r)]["steps"]), float(r["steps"]), ended[key(r)]) for r in full if key(r) in ended]
+print("\n| σc [MPa] | p [MPa] | σe [GPa] | α_n | m_w | status | steps | steps/settled | CPU [s] | ns per particle-step | e | Z | Z+ | Z− | Z limit | Z+ limit | Z− limit | β+ | β− |\n" + "|---" * 19 + "|")
+for steps_to, before, r in both:
+    value = lambda name, digits: f"{float(r[name]):.{digits}f}" if r[name] else "–"
+    limits = float(r["z_plus_limit"]) + float(r["z_minus_limit"])
+    print("| " + " | ".join([f"{float(r['sigma_c']) / 1e6:.3g}", f"{float(r['p']) / 1e6:g}", f"{float(r['sigma_e']) / 1e9:.3g}", f"{float(r['alpha_n']):g}", f"{float(r['mw']):g}",
+                              r["status"], f"{steps_to:.0f}", f"{steps_to / before:.2f}", f"{float(r['cpu_s']):.0f}", f"{float(r['cpu_s']) * 1e9 / steps_to / N:.0f}", value("e", 4), value("z", 3),
+                              value("z_plus", 3), value("z_minus", 3), f"{limits:.3f}", value("z_plus_limit", 3), value("z_minus_limit", 3), value("beta_plus", 2), value("beta_minus", 2)]) + " |")
+factors = [math.log(a / b) for a, b, _ in both]
+center, width = statistics.fmean(factors), statistics.stdev(factors)
+share = width / math.sqrt(len(factors))
+whole = steps * math.exp(middle + spread * spread / 2) * math.exp(center + width * width / 2)
+print(f"\nsteps to `evidence` over steps to settled: {math.exp(center):.2f}, from point to point a factor {math.exp(width):.2f}, of the mean ± {100 * share:.0f} %; "
+      f"{whole / 1e6:.0f} million steps")
+for ns in map(float, sys.argv[1:] or ["30"]):
+    hours = whole * N * ns * 1e-9 / 3600 / CORES
+    total = math.hypot(error, share)
+    print(f"{ns:g} ns per particle-step: {hours:.1f} h to `evidence` ({hours * math.exp(-total):.1f} to {hours * math.exp(total):.1f}) on {CORES} cores")
+
+
 def limit(row):
     """Step limit of the rule `evidence`: 20 settling times 0.452 (σe/p)^0.7 τ."""
     return 20 * 0.452 * (float(row["sigma_e"]) / float(row["p"])) ** 0.7 / dt(row)

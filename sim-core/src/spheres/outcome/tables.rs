@@ -36,6 +36,7 @@ pub(super) fn series(samples: &[Sample]) -> Result<Table, TableError> {
         .push("two_contact_particles", "1", &column(samples, |s| real(s.with_two)))?
         .push("ke", "kn d^2", &column(samples, |s| s.kinetic))?
         .push("ke_held", "kn d^2", &column(samples, |s| s.kinetic_held))?
+        .push("ke_contacts", "kn d^2", &column(samples, |s| s.deforming))?
         .push("eel", "kn d^2", &column(samples, |s| s.elastic))?
         .push("unbalanced_force", "1", &column(samples, |s| s.unbalanced))?;
     for (wall, name) in WALLS.iter().enumerate() {
