@@ -48,6 +48,8 @@ pub(super) struct Lists {
     pub near_at: Vec<[f64; 3]>,
     /// Displacement each particle may make before the next refresh [d], by slot.
     pub budget: Vec<f64>,
+    /// Least of them [d].
+    pub least_budget: f64,
     /// Displacement each wall may make before the next refresh [d].
     pub wall_budget: [f64; 6],
     /// Relative displacement by deformation that a pair may make before the next refresh [d].

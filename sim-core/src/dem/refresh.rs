@@ -15,6 +15,10 @@ use crate::state::{Body, Chunk, Grains};
 const LEAST_BUDGET: f64 = 4e-4;
 const MOST_BUDGET: f64 = 0.5 * NEAR_MARGIN;
 
+/// Least speed a particle has a budget for, in mean speeds: in a violent state a slow particle that is hit would otherwise use
+/// up its budget within a step.
+const LEAST_SPEED: f64 = 0.6;
+
 /// Bounds of the number of steps a refresh is meant to last.
 const STEPS_PER_REFRESH: (f64, f64) = (6.0, 120.0);
 
@@ -83,6 +87,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         let steps = steps.clamp(STEPS_PER_REFRESH.0, STEPS_PER_REFRESH.1);
         self.lists.horizon = 1.5 * steps * self.dt;
         let horizon = self.lists.horizon;
+        self.lists.least_budget = budget_of(LEAST_SPEED * mean_speed, horizon);
         if let Some(walls) = &self.walls {
             self.lists.wall_budget = walls.velocity.map(|velocity| budget_of(velocity.abs(), horizon));
         }
@@ -105,7 +110,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             let near_at = &lists.near_at[own.start..own.end];
             let mut stay = true;
             for ((body, budget), from) in bodies.iter_mut().zip(budget).zip(near_at) {
-                *budget = budget_of(*budget, lists.horizon);
+                *budget = budget_of(*budget, lists.horizon).max(lists.least_budget);
                 body.position[3] = 1.0 / *budget;
                 let from = boundary.since_mark(*from);
                 let square: f64 = (0..3).map(|k| (body.position[k] - from[k]).powi(2)).sum();
