@@ -25,6 +25,12 @@ const VARIANTS: &[(&str, &str)] = &[
     ("total_bilinear_explicit", r#"{"method": "explicit", "wall_speed": 0.1}"#),
     ("total_cubic", r#"{"variant": "total_cubic"}"#),
     ("updated_cubic", r#"{"variant": "updated_cubic"}"#),
+    ("total_cubic_1", r#"{"variant": "total_cubic", "points_across": 1}"#),
+    ("total_cubic_9", r#"{"variant": "total_cubic", "points_across": 3}"#),
+    ("total_cubic_16", r#"{"variant": "total_cubic", "points_across": 4}"#),
+    ("updated_cubic_1", r#"{"variant": "updated_cubic", "points_across": 1}"#),
+    ("updated_cubic_9", r#"{"variant": "updated_cubic", "points_across": 3}"#),
+    ("updated_cubic_16", r#"{"variant": "updated_cubic", "points_across": 4}"#),
     ("updated_cubic_common_mesh", r#"{"variant": "updated_cubic", "contact": "common_mesh"}"#),
 ];
 
@@ -168,7 +174,7 @@ fn approach(kind: ContactKind, h: f64, offset: f64, pair: bool) -> f64 {
     let speed = 1e-3;
     let disc = |x: f64, v: f64| -> Body {
         let centre = [x, 0.0];
-        let (fill, markers) = (spline::disc(centre, 0.5, h), spline::circle(centre, 0.5, h, 0.25));
+        let (fill, markers) = (spline::disc(centre, 0.5, h, 2), spline::circle(centre, 0.5, h, 0.25));
         let mut body = updated::body(&fill, markers, h, 0.5, centre, &material);
         let cloud = body.cloud.as_mut().expect("an updated Lagrangian body");
         cloud.velocity.fill([v, 0.0]);

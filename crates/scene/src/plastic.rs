@@ -154,6 +154,8 @@ pub struct Plastic {
     pub theta: f64,
     /// Cells across a diameter; `None`: 24 for one disc, 12 in an assembly.
     pub cells: Option<u64>,
+    /// Material points across a cell, with splines.
+    pub points_across: u64,
     /// How strain and rotation are read from the motion.
     pub rotation: Rotation,
     /// Whether the stress sees the mean volume change of a cell.
@@ -210,12 +212,27 @@ pub struct ReducedPlastic {
     pub theta: f64,
     /// Cells across a diameter.
     pub cells: u64,
+    /// Material points across a cell, with splines; left out where there are two.
+    #[serde(default = "default_points", skip_serializing_if = "are_default_points")]
+    pub points_across: u64,
     /// How strain and rotation are read from the motion.
     pub rotation: Rotation,
     /// Whether the stress sees the mean volume change of a cell.
     pub f_bar: bool,
     /// Nominal strain between two recorded states [1].
     pub strain_step: f64,
+}
+
+/// Material points across a cell unless the scene says otherwise.
+const DEFAULT_POINTS: u64 = 2;
+
+fn default_points() -> u64 {
+    DEFAULT_POINTS
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+fn are_default_points(points: &u64) -> bool {
+    *points == DEFAULT_POINTS
 }
 
 fn is_default<T: Default + PartialEq>(value: &T) -> bool {

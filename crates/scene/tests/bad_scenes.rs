@@ -127,6 +127,8 @@ fn variants_of_plastic_discs_that_do_not_go_together_are_refused() {
     assert!(explicit.remedy.contains("total_bilinear"));
     let mesh = one(json!({"model": "plastic_discs", "contact": "common_mesh", "variant": "total_cubic"}));
     assert_eq!(mesh.field, "contact");
+    let points = one(json!({"model": "plastic_discs", "points_across": 3}));
+    assert_eq!(points.field, "points_across");
     assert!(mesh.remedy.contains("updated_cubic"));
     let word = one(json!({"model": "plastic_discs", "variant": "updated_bilinear"}));
     assert!(word.field == "variant" && word.remedy.contains("updated_cubic"), "{word:?}");

@@ -90,6 +90,8 @@ struct Shapes {
     template: Option<Arc<Template>>,
     /// Distance of nodes of the grids of updated Lagrangian bodies.
     spacing: f64,
+    /// Material points across a cell of these grids.
+    points: u32,
     symmetric: bool,
     law: Law,
 }
@@ -97,21 +99,22 @@ struct Shapes {
 impl Shapes {
     fn new(scene: &ReducedPlastic, law: &Law) -> Self {
         let across = usize::try_from(scene.cells).expect("at most 64");
+        let points = u32::try_from(scene.points_across).expect("at most 4");
         let symmetric = scene.setup == Setup::Cell;
         let template = match (scene.variant, symmetric) {
             (Variant::TotalBilinear, false) => Some(disc(across)),
             (Variant::TotalBilinear, true) => Some(symmetric_disc(across)),
-            (Variant::TotalCubic, false) => Some(cubic_disc(across)),
-            (Variant::TotalCubic, true) => Some(symmetric_cubic_disc(across)),
+            (Variant::TotalCubic, false) => Some(cubic_disc(across, points)),
+            (Variant::TotalCubic, true) => Some(symmetric_cubic_disc(across, points)),
             (Variant::UpdatedCubic, _) => None,
         };
-        Self { template: template.map(Arc::new), spacing: 1.0 / across as f64, symmetric, law: *law }
+        Self { template: template.map(Arc::new), spacing: 1.0 / across as f64, points, symmetric, law: *law }
     }
 
     fn body(&self, radius: f64, centre: [f64; 2]) -> Body {
         let material = &self.law.material;
         let Some(template) = &self.template else {
-            let fill = spline::disc(centre, radius, self.spacing);
+            let fill = spline::disc(centre, radius, self.spacing, self.points);
             let turn = if self.symmetric { 0.0 } else { 0.25 };
             let markers = spline::circle(centre, radius, self.spacing, turn);
             let mut body = updated::body(&fill, markers, self.spacing, radius, centre, material);

@@ -14,7 +14,7 @@ use super::scenes::{D, law, level, run, upright};
 
 /// A disc of radius `r` [µm] on a grid of spacing `h`.
 fn disc(centre: [f64; 2], r: f64, h: f64, hardening: &str) -> Body {
-    let (fill, markers) = (spline::disc(centre, r, h), spline::circle(centre, r, h, 0.25));
+    let (fill, markers) = (spline::disc(centre, r, h, 2), spline::circle(centre, r, h, 0.25));
     updated::body(&fill, markers, h, r, centre, &law(hardening).material)
 }
 
@@ -229,7 +229,7 @@ fn course(mut world: World, hardening: &str) -> (f64, f64, World) {
 #[test]
 fn both_spline_variants_follow_the_finite_element_reference() {
     let (h, hardening) = (D / 12.0, "1");
-    let total = Body::new(Arc::new(cubic_disc(12)), D / 2.0, [0.0, D / 2.0], &law(hardening).material);
+    let total = Body::new(Arc::new(cubic_disc(12, 2)), D / 2.0, [0.0, D / 2.0], &law(hardening).material);
     let updated = disc([0.0, D / 2.0], D / 2.0, h, hardening);
     for (name, body) in [("total", total), ("updated", updated)] {
         let (force, work, world) = course(press(body, hardening, 0.5), hardening);

@@ -18,10 +18,11 @@ const STABLE: f64 = 0.5;
 const JAMMED: f64 = 0.85;
 
 impl ReducedPlastic {
-    /// Material points: four per cell, about 0.97 cells per square of a cell's width.
+    /// Material points: four per cell unless the scene says otherwise, about 0.97 cells per square of a cell's width.
     #[must_use]
     pub fn points(&self) -> u64 {
-        self.n * (39 * self.cells * self.cells / 10).max(16)
+        let per_cell = self.points_across * self.points_across;
+        self.n * (39 * per_cell * self.cells * self.cells / 40).max(4 * per_cell)
     }
 
     /// Height of the box before compression [d].

@@ -2,7 +2,7 @@
 
 use serde_json::Value;
 
-use super::{Contact, HardeningMeaning, Material, Method, Plastic, Setup, Variant};
+use super::{Contact, DEFAULT_POINTS, HardeningMeaning, Material, Method, Plastic, Setup, Variant};
 use crate::Problem;
 use crate::table::{Absent, Bound, Domain, Key, Word};
 
@@ -283,6 +283,14 @@ pub(super) const KEYS: &[Key] = &[
         source: "choice, see docs/notation.md",
     },
     Key {
+        name: "points_across",
+        unit: "1",
+        domain: Domain::Integer(1, 4),
+        absent: Absent::Default("2"),
+        meaning: "material points across a cell of a variant with splines; 2 is four per cell",
+        source: "2021, section 3: four per cell",
+    },
+    Key {
         name: "rotation",
         unit: "-",
         domain: Domain::Word(ROTATIONS),
@@ -319,6 +327,11 @@ pub(super) fn conflicts(scene: &Plastic) -> Vec<Problem> {
     if let Some(cells) = scene.cells.filter(|cells| cells % 2 == 1) {
         let remedy = format!("use {} or {}", cells - 1, cells + 1);
         problems.push(Problem::new("cells", &Value::from(cells), "is not even", remedy));
+    }
+    if scene.points_across != DEFAULT_POINTS && scene.variant == Variant::TotalBilinear {
+        let remedy = "leave it out, or use variant total_cubic or updated_cubic";
+        let value = Value::from(scene.points_across);
+        problems.push(Problem::new("points_across", &value, "bilinear cells have 2 × 2 points", remedy));
     }
     if scene.method == Method::Explicit && scene.variant != Variant::TotalBilinear {
         let value = serde_json::to_value(scene.variant).unwrap_or_default();

@@ -45,6 +45,7 @@ impl Description for Plastic {
             dt: self.dt.map(|dt| round12(dt * self.speed_unit() / self.diameter())),
             theta: round12(self.theta),
             cells: self.cells_across(),
+            points_across: self.points_across,
             rotation: self.rotation,
             f_bar: self.f_bar,
             strain_step: round12(self.strain_step),

@@ -1,4 +1,5 @@
-//! Four material points per cell, with the volume that their quarter of the cell has inside the body.
+//! Material points, four per cell or as many as asked for, with the volume that their part of the cell has inside the
+//! body.
 
 use super::Spread;
 
@@ -25,30 +26,30 @@ impl Fill {
     }
 }
 
-/// Strips across a quarter cell that is cut by the outline.
+/// Strips across a part of a cell that is cut by the outline.
 const STRIPS: usize = 32;
 
-/// Least share of a quarter cell that makes a point; what smaller slivers hold is spread over all points.
+/// Least share of such a part that makes a point; what smaller slivers hold is spread over all points.
 const SLIVER: f64 = 0.02;
 
-/// A disc: in every quarter of a cell one point, at the centroid of what lies inside and with its area. With equal
-/// volumes instead, the outline is a staircase of quarter cells, which costs up to 10 % of force at small strain.
-/// Volumes are scaled to the exact area π R².
+/// A disc: `across` points side by side in a cell, each at the centroid of what of its part of the cell lies inside and
+/// with its area. With equal volumes instead, the outline is a staircase, which costs up to 10 % of force at small strain
+/// with quarter cells. Volumes are scaled to the exact area π R².
 #[must_use]
-pub fn disc(centre: [f64; 2], radius: f64, spacing: f64) -> Fill {
-    let half = 0.5 * spacing;
+pub fn disc(centre: [f64; 2], radius: f64, spacing: f64, across: u32) -> Fill {
+    let part = spacing / f64::from(across);
     let range = |axis: usize| {
-        let low = ((centre[axis] - radius) / half).floor();
-        let high = ((centre[axis] + radius) / half).ceil();
+        let low = ((centre[axis] - radius) / part).floor();
+        let high = ((centre[axis] + radius) / part).ceil();
         #[expect(clippy::cast_possible_truncation, reason = "a body is far smaller than 2³¹ cells")]
         (low as i32, high as i32)
     };
     let mut fill = Fill::default();
     for j in range(1).0..range(1).1 {
         for i in range(0).0..range(0).1 {
-            let low = [half * f64::from(i) - centre[0], half * f64::from(j) - centre[1]];
-            let (area, at, spread) = inside(low, half, radius);
-            if area > SLIVER * half * half {
+            let low = [part * f64::from(i) - centre[0], part * f64::from(j) - centre[1]];
+            let (area, at, spread) = inside(low, part, radius);
+            if area > SLIVER * part * part {
                 fill.positions.push([centre[0] + at[0], centre[1] + at[1]]);
                 fill.volumes.push(area);
                 fill.spreads.push(spread);
@@ -164,7 +165,7 @@ mod tests {
     #[test]
     fn a_disc_has_its_moments_wherever_it_lies_on_the_grid() {
         for centre in [[0.0, 0.0], [0.03, -0.41]] {
-            let fill = disc(centre, 0.5, 1.0 / 12.0);
+            let fill = disc(centre, 0.5, 1.0 / 12.0, 2);
             let sum = |of: &dyn Fn([f64; 2]) -> f64| -> f64 {
                 fill.positions.iter().zip(&fill.volumes).map(|(&x, v)| v * of(x)).sum()
             };

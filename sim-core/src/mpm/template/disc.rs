@@ -21,23 +21,24 @@ pub fn symmetric_disc(across: usize) -> Template {
     turned(across, 0.0)
 }
 
-/// A unit disc on a regular grid of cubic splines, `across` cells along a diameter (even), a node in the centre;
+/// A unit disc on a regular grid of cubic splines, `across` cells along a diameter (even), a node in the centre,
+/// `points` material points across a cell;
 /// cells that the outline cuts have points for what lies inside.
 #[must_use]
-pub fn cubic_disc(across: usize) -> Template {
-    gridded(across, 0.25)
+pub fn cubic_disc(across: usize, points: u32) -> Template {
+    gridded(across, points, 0.25)
 }
 
 /// The same with markers that are symmetric about both axes.
 #[must_use]
-pub fn symmetric_cubic_disc(across: usize) -> Template {
-    gridded(across, 0.0)
+pub fn symmetric_cubic_disc(across: usize, points: u32) -> Template {
+    gridded(across, points, 0.0)
 }
 
-fn gridded(across: usize, turn: f64) -> Template {
+fn gridded(across: usize, points: u32, turn: f64) -> Template {
     assert!(across >= 2 && across.is_multiple_of(2), "cells across the diameter: even, at least 2");
     let spacing = 2.0 / across as f64;
-    let fill = functions::disc([0.0; 2], 1.0, spacing);
+    let fill = functions::disc([0.0; 2], 1.0, spacing, points);
     let fill = fill.permuted(&cell_order(&fill.positions, spacing));
     let markers = functions::circle([0.0; 2], 1.0, spacing, turn);
     let scatter = Scatter {
