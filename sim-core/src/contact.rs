@@ -40,7 +40,7 @@ pub struct PairGeometry<S: Space, L: Lane> {
 pub struct PairMotion<S: Space, L: Lane> {
     /// Velocity of b minus velocity of a [d/τ].
     pub velocity: S::Vector<L>,
-    /// R_a ω_a + R_b ω_b where the radii differ [d/τ].
+    /// R_a ω_a + R_b ω_b [d/τ]; `None` where one radius belongs to all of `spin_sum`: equal particles, a wall.
     pub rim: Option<S::Spin<L>>,
     /// ω_a + ω_b (b: none for a wall) [1/τ].
     pub spin_sum: S::Spin<L>,

@@ -31,7 +31,7 @@ pub struct View {
 }
 
 /// One interacting pair.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PairContact {
     /// First particle.
     pub i: usize,

@@ -41,11 +41,7 @@ mod tests {
                 j: 1,
                 normal: [1.0, 0.0, 0.0],
                 overlap: 0.01,
-                elastic: 0.01,
-                normal_force: 0.01,
-                viscous: 0.0,
-                tangential: [0.0; 3],
-                sliding: false,
+                ..PairContact::default()
             }],
             ..View::default()
         }

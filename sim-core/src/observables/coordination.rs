@@ -110,9 +110,7 @@ mod tests {
             overlap: 0.01,
             elastic: 0.01,
             normal_force,
-            viscous: 0.0,
-            tangential: [0.0; 3],
-            sliding: false,
+            ..PairContact::default()
         }
     }
 

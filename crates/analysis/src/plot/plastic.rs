@@ -82,7 +82,10 @@ pub fn compaction_svg(compaction: &Compaction) -> String {
         by_phi.push(line(Dash::Dashed, &|sample| Some(sample.paper)));
         let strain_line =
             curve.model.iter().filter_map(|sample| Some((sample.excess_strain?, sample.by_strain? / 1e6)));
-        by_strain.push(Layer::Line { color, dash: Dash::Solid, points: strain_line.collect() });
+        // Where nothing could be fitted the model has the paper's constants.
+        let fitted = curve.model.iter().any(|sample| sample.fitted.is_some());
+        let dash = if fitted { Dash::Solid } else { Dash::Dashed };
+        by_strain.push(Layer::Line { color, dash, points: strain_line.collect() });
     }
     let stress = |label: &str| Axis::around(label, Scale::Linear, stresses.iter().copied());
     Figure {

@@ -164,16 +164,25 @@ mod tests {
 
     #[test]
     fn a_disc_has_its_moments_wherever_it_lies_on_the_grid() {
-        for centre in [[0.0, 0.0], [0.03, -0.41]] {
-            let fill = disc(centre, 0.5, 1.0 / 12.0, 2);
+        for (centre, across) in
+            [[0.0, 0.0], [0.03, -0.41]].into_iter().flat_map(|c| (2..5).map(move |k| (c, k)))
+        {
+            let fill = disc(centre, 0.5, 1.0 / 12.0, across);
             let sum = |of: &dyn Fn([f64; 2]) -> f64| -> f64 {
                 fill.positions.iter().zip(&fill.volumes).map(|(&x, v)| v * of(x)).sum()
             };
             let area = std::f64::consts::FRAC_PI_4;
             assert!((sum(&|_| 1.0) - area).abs() < 1e-12);
+            // as many as parts of cells fit into the area, and some of those that the outline cuts
+            let (parts, rim) = (area * f64::from(144 * across * across), f64::from(48 * across));
+            let more = fill.positions.len() as f64 - parts;
+            assert!(more > 0.0 && more < rim, "{across} across: {more} more than {parts}");
             let first = [0, 1].map(|axis| sum(&|x| x[axis] - centre[axis]));
-            // 75 cut quarters of mean area (h/2)²/2, each right to 1e-3, at a distance of 1/2
-            assert!(first.iter().all(|moment| moment.abs() < 3.3e-5), "{first:?}");
+            // 75 k/2 cut parts of mean area (h/k)²/2, each right to 1e-3, at a distance of 1/2
+            assert!(
+                first.iter().all(|moment| moment.abs() < 6.6e-5 / f64::from(across)),
+                "{across} across: {first:?}"
+            );
             // ∫ x² = π R⁴/4, with the moments of what each point stands for
             let second = sum(&|x| (x[0] - centre[0]) * (x[0] - centre[0]));
             let own: f64 = fill.spreads.iter().zip(&fill.volumes).map(|(spread, v)| v * spread[0]).sum();
