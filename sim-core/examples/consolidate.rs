@@ -1,7 +1,9 @@
 //! Runs a scene of cohesive discs from standard input; the scene and its states as JSON lines on standard output.
 //!
-//! `consolidate [STEPS [CHECKPOINT]]`: at most so many steps; from the checkpoint where there is one, else from the
-//! start and then written there. For timings of one state: write it once, then go on from it as often as needed.
+//! `consolidate [STEPS [CHECKPOINT [TABLES]]]`: at most so many steps; from the checkpoint where there is one, else from
+//! the start and then written there. For timings of one state: write it once, then go on from it as often as needed.
+//! TABLES gets cell, discs and contacts of the end, force histograms and I(k) of every state, as JSON; a CHECKPOINT of
+//! `-` is not written.
 //! With `rest` for STEPS it stops just before the first equilibrium state: one aggregation then serves scenes that
 //! differ in what comes after it (`assembly_cell_mass`, `p0`, `ia`, `path`).
 
@@ -23,7 +25,8 @@ fn main() {
         Some(word) if !until_rest => word.parse().expect("a number of steps"),
         _ => u64::MAX,
     };
-    let kept = std::env::args().nth(2);
+    let kept = std::env::args().nth(2).filter(|path| path != "-");
+    let tables = std::env::args().nth(3);
     let known_state = kept.as_ref().and_then(|path| std::fs::read(path).ok());
     let options = Options::default();
     let mut run = match &known_state {
@@ -78,6 +81,11 @@ fn main() {
             if let (Some(path), None) = (&kept, &known_state) {
                 let state = if until_rest { before_rest } else { run.save() };
                 std::fs::write(path, state).expect("a writable checkpoint");
+            }
+            if let Some(path) = &tables {
+                let packing = run.outcome().expect("an outcome").packing;
+                let text = serde_json::to_string(&packing).expect("JSON");
+                std::fs::write(path, text).expect("a writable file for the tables");
             }
             break;
         }
