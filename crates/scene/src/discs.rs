@@ -60,6 +60,8 @@ pub struct Discs {
     pub size_ratio: f64,
     /// Solid fraction of the fluid Φ_I [1].
     pub phi_i: f64,
+    /// Metropolis sweeps that turn the random insertion into a fluid.
+    pub fluid_sweeps: u64,
     /// Agitation of type 2, V0/V*, and of the cohesionless gas, V0/√(a P/m) [1]; `None`: 9.5, and the speed at which
     /// the pressure of the gas is the first pressure.
     pub v0: Option<f64>,
@@ -111,6 +113,9 @@ pub struct ReducedDiscs {
     pub size_ratio: f64,
     /// Solid fraction of the fluid Φ_I [1].
     pub phi_i: f64,
+    /// Metropolis sweeps of the fluid; left out where it is the default, so that older keys stay.
+    #[serde(default = "default_sweeps", skip_serializing_if = "are_default_sweeps")]
+    pub fluid_sweeps: u64,
     /// Agitation: V0/V* of type 2, V0/√(a P/m) without cohesion [1]; 0 for type 1.
     pub v0: f64,
     /// First pressure, P* (P/K_N without cohesion) [1].
@@ -131,4 +136,17 @@ pub struct ReducedDiscs {
     pub dt: f64,
     /// Time after which a state without equilibrium ends the run [T0].
     pub max_time: f64,
+}
+
+/// Sweeps after which pairs and long waves are those of the fluid, from insertion and from a lattice alike
+/// (`docs/validation/cohesive-discs`).
+const DEFAULT_SWEEPS: u64 = 300;
+
+fn default_sweeps() -> u64 {
+    DEFAULT_SWEEPS
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+fn are_default_sweeps(sweeps: &u64) -> bool {
+    *sweeps == DEFAULT_SWEEPS
 }

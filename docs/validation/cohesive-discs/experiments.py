@@ -1,7 +1,7 @@
 """Experiments on the preparation: writes experiments.csv and prints the table of README.md.
 
 usage: experiments.py            (table from experiments.csv)
-       experiments.py DIRECTORY  (reads LABEL_sSEED.jsonl, the output of `consolidate`, first)
+       experiments.py DIRECTORY  (first takes in LABEL_sSEED.jsonl, the output of `consolidate`; other labels stay)
 
 Standard library only."""
 import collections
@@ -16,15 +16,20 @@ import sys
 HERE = pathlib.Path(__file__).parent
 COLUMNS = ["branch", "p", "phi", "z", "z_star", "rattler_share", "steps", "converged"]
 if len(sys.argv) > 1:
+    with open(HERE / "experiments.csv") as file:
+        known = list(csv.reader(file))[1:]
+    found = []
+    for path in sorted(pathlib.Path(sys.argv[1]).glob("*.jsonl")):
+        label, seed = re.fullmatch(r"(.+)_s(\d+)", path.stem).groups()
+        for line in map(json.loads, open(path)):
+            if "row" in line:
+                values = [line["row"].get(name, "") for name in COLUMNS]
+                found.append([label, seed] + [f"{v:.8g}" if isinstance(v, float) else str(v) for v in values])
+    labels = {row[0] for row in found}
     with open(HERE / "experiments.csv", "w", newline="") as file:
         out = csv.writer(file, lineterminator="\n")
         out.writerow(["label", "seed"] + COLUMNS)
-        for path in sorted(pathlib.Path(sys.argv[1]).glob("*.jsonl")):
-            label, seed = re.fullmatch(r"(.+)_s(\d+)", path.stem).groups()
-            for line in map(json.loads, open(path)):
-                if "row" in line:
-                    values = [line["row"].get(name, "") for name in COLUMNS]
-                    out.writerow([label, seed] + [f"{v:.8g}" if isinstance(v, float) else v for v in values])
+        out.writerows(sorted([row for row in known if row[0] not in labels] + found, key=lambda r: (r[0], int(r[1]))))
 groups = collections.defaultdict(list)
 with open(HERE / "experiments.csv") as file:
     for row in csv.DictReader(file):

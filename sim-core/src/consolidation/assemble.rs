@@ -9,9 +9,6 @@ use crate::boundary::CellControl;
 use crate::dem::{DiscParameters, InitialDiscs};
 use crate::packing::hard_discs::{FluidRecipe, hard_disc_fluid, maxwell_velocities};
 
-/// Metropolis sweeps of the fluid.
-const SWEEPS: usize = 300;
-
 /// Streams of random numbers.
 const POSITIONS: u128 = 1;
 const VELOCITIES: u128 = 2;
@@ -47,7 +44,7 @@ pub fn initial_state(scene: &ReducedDiscs) -> Result<InitialDiscs, SimError> {
         solid_fraction: scene.phi_i,
         size_ratio: scene.size_ratio,
         clearance: 1.01 * scene.d0,
-        sweeps: SWEEPS,
+        sweeps: usize::try_from(scene.fluid_sweeps).unwrap_or(usize::MAX),
     };
     let mut random = Pcg64::new(u128::from(scene.seed), POSITIONS);
     let fluid = hard_disc_fluid(&recipe, &mut random)

@@ -140,6 +140,14 @@ pub(super) const KEYS: &[Key] = &[
         source: "2008, section II C",
     },
     Key {
+        name: "fluid_sweeps",
+        unit: "1",
+        domain: Domain::Integer(0, 1_000_000),
+        absent: Absent::Default("300"),
+        meaning: "Metropolis sweeps that turn random sequential insertion, largest disc first, into the hard-disc fluid; 0: the insertion as it is, with a sixth fewer close pairs",
+        source: OURS,
+    },
+    Key {
         name: "v0",
         unit: "1",
         domain: Domain::Auto(&Domain::Real(Bound::Including(0.0), Bound::Including(1e4))),

@@ -42,6 +42,7 @@ impl Description for Discs {
             en: round12(self.en),
             size_ratio: round12(self.size_ratio),
             phi_i: round12(self.phi_i),
+            fluid_sweeps: self.fluid_sweeps,
             v0: match self.assembly {
                 Assembly::Type1 => 0.0,
                 Assembly::Type2 => round12(self.v0.unwrap_or(AGITATION)),
@@ -164,6 +165,16 @@ mod tests {
         assert!((gas(0.36, 0.5) - 1.453).abs() < 1e-3, "{}", gas(0.36, 0.5));
         assert_eq!(reduced(&json!({"assembly": "cohesionless", "v0": 0})).v0, 0.0);
         assert_eq!(reduced(&json!({"assembly": "cohesionless"})).assembly_cell_mass, None);
+    }
+
+    #[test]
+    fn the_default_number_of_sweeps_is_not_part_of_the_key() {
+        let written = |keys: &Value| serde_json::to_value(reduced(keys)).unwrap();
+        assert!(written(&json!({})).get("fluid_sweeps").is_none());
+        assert_eq!(written(&json!({"fluid_sweeps": 300})), written(&json!({})));
+        let inserted = written(&json!({"fluid_sweeps": 0}));
+        assert_eq!(inserted["fluid_sweeps"], 0);
+        assert_eq!(serde_json::from_value::<ReducedDiscs>(inserted).unwrap().fluid_sweeps, 0);
     }
 
     #[test]
