@@ -1,15 +1,18 @@
 //! How scenes approach their final state, for the studies of docs/accuracy.md:
 //!
-//! `cargo run --release -p sim-core --example approach -- SWEEP.json OUT [--cpu SECONDS] [--growth 1.1] [--threads 1]`
+//! `cargo run --release -p sim-core --example approach -- SWEEP.json OUT [--cpu SECONDS] [--growth 1.1] [--threads 1]
+//! [--save SECONDS] [--pause 1]`
 //!
 //! Runs every point of a sweep by its own stop rule and appends to `OUT.csv` the record on the way, whenever the number
 //! of steps has grown by the given factor, and at the end (`mark` = `way`, `end`, or `cut` where a point has used its CPU
 //! time, `failed` with the reason); with what still moves in it; to `OUT.series.csv` its samples, from which what any stop rule would have done
 //! can be read off. A point that has its last row is skipped, so the command can be
-//! repeated. `cpu_s` counts the steps alone, on all threads of the process; what is looked at beside them is left out.
+//! repeated; with `--save` it goes on from a checkpoint that is written after so many CPU seconds, and with `--pause 1` a
+//! point is left there (row with mark `settled` in its state) once e counts as settled, to go on without that flag. `cpu_s` counts the steps alone, on all threads of the process; what is looked at beside them is left out.
 #![expect(clippy::print_stdout, reason = "an example for the command line")]
 
 mod motion;
+mod state;
 
 use std::fs::{self, File, OpenOptions};
 use std::io::Write;
@@ -18,7 +21,7 @@ use std::path::{Path, PathBuf};
 use record::{Cell, Outcome, Table};
 use scene::Scene;
 use scene::sweep::Sweep;
-use sim_core::{KernelChoice, Options, SimError, compile};
+use sim_core::{KernelChoice, Options, SimError};
 
 /// Keys of a scene and columns of a record that are written.
 const KEYS: [&str; 14] = [
@@ -96,8 +99,10 @@ impl Sheet {
         Self(file)
     }
 
-    fn line(&mut self, cells: &[String]) {
-        writeln!(self.0, "{}", cells.join(",")).expect("a writable file");
+    fn lines(&mut self, lines: &[String]) {
+        for line in lines {
+            writeln!(self.0, "{line}").expect("a writable file");
+        }
     }
 }
 
@@ -133,6 +138,17 @@ struct Limits {
     cpu: f64,
     growth: f64,
     options: Options,
+    /// CPU seconds between checkpoints; infinite without.
+    save: f64,
+    /// Leave a point when e counts as settled, to go on another time.
+    pause: bool,
+}
+
+/// What the rule `settled` asks for by default, whatever the rule of the scene.
+fn settled(outcome: &Outcome) -> bool {
+    let below = |name: &str, limit: f64| outcome.record.real(name).is_some_and(|value| value <= limit);
+    let loaded = outcome.record.text("criteria").is_some_and(|found| found.contains("loaded"));
+    below("e_drift", 1e-3) && below("wall_imbalance", 0.01) && loaded
 }
 
 /// The next step at which the record is written: 2500, then by the factor.
@@ -146,30 +162,44 @@ fn after(step: u64, growth: f64) -> u64 {
     (step + 250).max((step as f64 * growth) as u64).max(2500)
 }
 
-/// Runs a scene; every row on the way and its mark go to `row`. Returns the last mark and the series.
+/// Runs a scene from where `place` has it; `line` makes a row. Returns the last mark, all rows and the series.
 fn run(
     scene: &Scene,
     limits: &Limits,
-    row: &mut dyn FnMut(&str, f64, &Outcome),
-) -> Result<(String, Table), SimError> {
-    let mut simulation = compile(&scene.reduce(), &limits.options)?;
-    let (mut cpu, mut next) = (0.0, after(0, limits.growth));
+    place: &Path,
+    line: &dyn Fn(&str, f64, &Outcome) -> String,
+) -> Result<(&'static str, Vec<String>, Table), SimError> {
+    let (mut simulation, mut left) = state::open(place, scene, &limits.options)?;
+    left.next = left.next.max(after(0, limits.growth));
+    let mut calm = left.rows.iter().any(|row| row.contains(",settled,"));
+    let mut saved = left.cpu;
     loop {
         let begun = cpu_seconds();
         let done = simulation.progress().steps;
-        let slice = (next - done).min(2000);
+        let slice = (left.next - done).min(2000);
         let progress = simulation.advance(slice)?;
-        cpu += cpu_seconds() - begun;
-        let cut = cpu > limits.cpu;
+        left.cpu += cpu_seconds() - begun;
+        let cut = left.cpu > limits.cpu;
         if progress.finished || cut {
             let outcome = simulation.outcome()?;
             let mark = if progress.finished { "end" } else { "cut" };
-            row(mark, cpu, &outcome);
-            return Ok((mark.to_owned(), outcome.series));
+            left.rows.push(line(mark, left.cpu, &outcome));
+            return Ok((mark, left.rows, outcome.series));
         }
-        if progress.steps >= next {
-            row("way", cpu, &simulation.outcome()?);
-            next = after(progress.steps, limits.growth);
+        if progress.steps >= left.next {
+            let outcome = simulation.outcome()?;
+            let here = !calm && settled(&outcome);
+            left.rows.push(line(if here { "settled" } else { "way" }, left.cpu, &outcome));
+            calm |= here;
+            left.next = after(progress.steps, limits.growth);
+            if here && limits.pause {
+                state::write(place, &left, &simulation.save());
+                return Ok(("settled", left.rows, outcome.series));
+            }
+        }
+        if left.cpu > saved + limits.save {
+            state::write(place, &left, &simulation.save());
+            saved = left.cpu;
         }
     }
 }
@@ -202,23 +232,31 @@ fn write_series(sheet: &mut Sheet, label: &str, series: &Table) {
             let mut cells = vec![label.to_owned()];
             cells.extend(columns.iter().map(|values| number(values[k])));
             cells.extend(walls.iter().map(|(force, load)| format!("{:.5}", force[k] / load[k])));
-            sheet.line(&cells);
+            sheet.lines(&[cells.join(",")]);
         }
     }
 }
 
 fn main() {
     let mut arguments = std::env::args().skip(1);
-    let usage = "usage: approach SWEEP.json OUT [--cpu SECONDS] [--growth FACTOR] [--threads COUNT]";
+    let usage = "usage: approach SWEEP.json OUT [--cpu SECONDS] [--growth FACTOR] [--threads COUNT] [--save SECONDS] [--pause 1]";
     let sweep = fs::read_to_string(arguments.next().expect(usage)).expect("a readable file");
     let sweep = Sweep::from_text(&sweep).unwrap_or_else(|problems| panic!("{problems}"));
     let out = arguments.next().expect(usage);
-    let mut limits = Limits { cpu: f64::INFINITY, growth: 1.1, options: Options::default() };
+    let mut limits = Limits {
+        cpu: f64::INFINITY,
+        growth: 1.1,
+        options: Options::default(),
+        save: f64::INFINITY,
+        pause: false,
+    };
     while let Some(flag) = arguments.next() {
         let value: f64 = arguments.next().and_then(|text| text.parse().ok()).expect(usage);
         match flag.as_str() {
             "--cpu" => limits.cpu = value,
             "--growth" => limits.growth = value,
+            "--save" => limits.save = value,
+            "--pause" => limits.pause = value > 0.0,
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
             "--threads" => limits.options = Options { threads: value as usize, kernel: KernelChoice::Auto },
             _ => panic!("{usage}"),
@@ -249,35 +287,37 @@ fn main() {
     );
     for point in sweep.points() {
         let label = point.scene.reduce().key().to_string();
-        if done.contains(&label) {
+        let place = state::path(&out, &label);
+        if done.contains(&label) || (limits.pause && state::settled(&place)) {
             continue;
         }
         let keys: Vec<String> = KEYS.iter().map(|name| key(&point.scene, name)).collect();
-        let mut held: Vec<Vec<String>> = Vec::new();
-        let found = run(&point.scene, &limits, &mut |mark, cpu, outcome| {
+        let found = run(&point.scene, &limits, &place, &|mark, cpu, outcome| {
             let mut cells = vec![label.clone(), mark.to_owned(), number(cpu)];
             cells.extend(keys.iter().cloned());
             cells.extend(COLUMNS.iter().map(|name| cell(outcome.record.get(name))));
             cells.extend(motion::motion(&outcome.packing).map(number));
-            held.push(cells);
+            cells.join(",")
         });
-        // all rows of a point at once, so that an interrupted one leaves none
+        // all rows of a point at once, at its end: an interrupted one leaves none, a paused one has them in its state
         match found {
-            Ok((mark, series)) => {
-                write_series(&mut samples, &label, &series);
+            Ok((mark, held, series)) => {
                 println!("{} {mark} {}", point.index, keys.join(" "));
+                if mark != "settled" {
+                    write_series(&mut samples, &label, &series);
+                    rows.lines(&held);
+                    // the file is there only after a pause or a checkpoint
+                    drop(fs::remove_file(place));
+                }
             }
             Err(error) => {
                 let mut cells = vec![label.clone(), "failed".to_owned(), String::new()];
                 cells.extend(keys.iter().cloned());
                 cells.push(error.to_string().replace(',', ";"));
                 cells.extend(std::iter::repeat_n(String::new(), COLUMNS.len() + motion::COLUMNS.len() - 1));
-                held.push(cells);
+                rows.lines(&[cells.join(",")]);
                 println!("{} failed: {error}", point.index);
             }
-        }
-        for cells in &held {
-            rows.line(cells);
         }
     }
 }

@@ -353,6 +353,75 @@ def sizes():
     table(["σc [MPa]", "n", "seeds", "steps", "cost [s]", "e", "scatter of e", "`e_se_scatter`", "measured/said", "measured/said before", "e_core", "Z", "Z+", "Z−", "β+", "β−"], rows)
 
 
+SCENE = ["sigma_c", "p", "sigma_e", "alpha_n"]
+COMPARED = [("e", "e", 4), ("z", "Z", 3), ("z_plus", "Z+", 3), ("z_minus", "Z−", 3), ("z_limit", "Z limit", 3), ("beta_plus", "β+", 2), ("beta_minus", "β−", 2),
+            ("e_core", "e core", 4), ("log_steps", "ln steps", 2)]
+
+
+def compared(name):
+    """Ends of a half of the precision study by scene and seed."""
+    found = defaultdict(dict)
+    for row in read(name):
+        if row["mark"] == "end":
+            if isinstance(row["z_plus_limit"], float):
+                row["z_limit"] = row["z_plus_limit"] + row["z_minus_limit"]
+            row["log_steps"] = math.log(row["steps"])
+            found[tuple(row[k] for k in SCENE)][row["seed"]] = row
+    return found
+
+
+def precision():
+    """Mixed precision against f64, seed by seed, by the rule `evidence`; a control is f64 again with p larger by 1e-10."""
+    say("## Precision", "", "n = 1000, rule `evidence` (the last scene: 500 000 steps), means over seeds of the difference to f64 ± standard error. A "
+        "packing is chaotic: another rounding is another packing of the same ensemble, so the control, f64 with p larger by 1e-10, differs as well.")
+    reference = compared("precision-f64.csv")
+    others = [(label, compared(f"precision-{label}.csv")) for label in ["mixed", "control"] if (HERE / f"precision-{label}.csv").exists()]
+    name_of = lambda scene: [mega(scene[0]), mega(scene[1]), f"{scene[2] / 1e9:g}", f"{scene[3]:g}"]
+    rows, summaries = [], []
+    scenes = sorted(reference, key=lambda scene: (scene[1] / scene[2], scene[0], scene[3]), reverse=True)
+    pooled = {}
+    for scene in scenes:
+        runs = list(reference[scene].values())
+        rows.append(name_of(scene) + ["f64: mean and scatter of a run", str(len(runs))]
+                    + [f"{mean([r.get(q) for r in runs])[0]:.{d}f}; {scatter([r.get(q) for r in runs]):.{d}f}" for q, _, d in COMPARED])
+    for label, other in others:
+        for place, scene in enumerate(scenes):
+            # p of the control is that of the scene to ten digits
+            found = min(other, key=lambda s: sum(abs(math.log((a + 1) / (b + 1))) for a, b in zip(s, scene)))
+            both = [seed for seed in reference[scene] if seed in other[found]]
+            if len(both) < 3:
+                continue
+            cells = name_of(scene) + [label, str(len(both))]
+            for q, _, digits in COMPARED:
+                differences = [difference(other[found][seed], reference[scene][seed], q) for seed in both]
+                cells.append(pm(differences, digits))
+                single = scatter([r.get(q) for r in reference[scene].values()])
+                m, s, k = mean(differences)
+                pooled.setdefault((label, q), []).append((place, m / single, s / single, m / s, k, [d / single for d in differences if d is not None]))
+            rows.append(cells)
+        cells = [label]
+        for q, _, _ in COMPARED:
+            found = pooled.get((label, q), [])
+            cells.append(f"{pm([d for f in found for d in f[5]], 2)}; {max((abs(f[3]) for f in found), default=math.nan):.1f}")
+        summaries.append(cells)
+    table(["σc [MPa]", "p [MPa]", "σe [GPa]", "α_n", "", "seeds"] + [f"Δ{label}" for _, label, _ in COMPARED], rows)
+    if not others:
+        return
+    say("All scenes together, difference over the scatter of a single run (mean ± standard error); largest of the scenes in its own standard errors:")
+    table([""] + [label for _, label, _ in COMPARED], summaries)
+    figure, axes = plt.subplots(1, 6, figsize=(14, 3.4), sharey=True)
+    for axis, (q, text) in zip(axes, [("e", "e"), ("z_plus", "Z+"), ("z_minus", "Z−"), ("beta_plus", "β+"), ("beta_minus", "β−"), ("log_steps", "ln of steps to the end")]):
+        for shift, (label, _) in enumerate(others):
+            found = pooled.get((label, q), [])
+            axis.errorbar([f[1] for f in found], [f[0] + 0.2 * shift for f in found], xerr=[1.96 * f[2] for f in found], fmt="o", ms=3, capsize=2, label=f"{label} − f64")
+        axis.axvline(0, color="0.6", lw=0.8)
+        axis.set_title(text)
+        axis.set_xlabel("over scatter of a run")
+    axes[0].set_yticks(range(len(scenes)), [f"σc {mega(s[0])}, p {mega(s[1])}, σe {s[2] / 1e6:g} MPa, α {s[3]:g}" for s in scenes], fontsize=6)
+    axes[0].legend(fontsize=6)
+    save(figure, "precision.svg")
+
+
 def convergence():
     say("## Deterministic cases", "")
     cases = defaultdict(list)
@@ -387,6 +456,8 @@ if __name__ == "__main__":
         summary(found, list(RULES))
         per_scene(found, ["settled, 2.5e-4", "evidence", "trend of Z 0.02 alone", "rolling kicks"])
         stop_figure(found, ["settled, 1e-3", "settled, 2.5e-4", "evidence"])
+    if "precision" in parts:
+        precision()
     if "kicks" in parts:
         found = shortfall("kicks-wide", "kicks-wide", "Kicks elsewhere", ["settled, 2.5e-4", "evidence"])
         summary(found, ["settled, 2.5e-4", "evidence"])
