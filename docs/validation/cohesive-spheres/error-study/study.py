@@ -372,7 +372,7 @@ def compared(name):
 
 def precision():
     """Mixed precision against f64, seed by seed, by the rule `evidence`; a control is f64 again with p larger by 1e-10."""
-    say("## Precision", "", "n = 1000, rule `evidence` (the last scene: 500 000 steps), means over seeds of the difference to f64 ± standard error. A "
+    say("## Precision", "", "n = 1000, rule `evidence` (at most 300 000 steps at σe = 200 GPa, p = 0.01 MPa), means over seeds of the difference to f64 ± standard error. A "
         "packing is chaotic: another rounding is another packing of the same ensemble, so the control, f64 with p larger by 1e-10, differs as well.")
     reference = compared("precision-f64.csv")
     others = [(label, compared(f"precision-{label}.csv")) for label in ["mixed", "control"] if (HERE / f"precision-{label}.csv").exists()]
