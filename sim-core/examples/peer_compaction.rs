@@ -69,6 +69,7 @@ fn read(path: &str, mu: f64) -> Result<(SphereParameters, InitialState), Box<dyn
         kt: 1.5,
         wall_mass: *wall_mass,
         moving: [true; 6],
+        mixed: false,
     };
     Ok((parameters, initial))
 }

@@ -21,12 +21,11 @@ pub trait Boundary<S: Space>:
     /// velocities of bodies are those relative to it.
     const DEFORMS: bool;
 
-    /// Nearest image: separation and relative velocity of b as seen from a.
-    fn nearest<L: Lane>(
-        &self,
-        separation: S::Vector<L>,
-        velocity: S::Vector<L>,
-    ) -> (S::Vector<L>, S::Vector<L>);
+    /// Nearest image: separation of b as seen from a.
+    fn nearest<L: Lane>(&self, separation: S::Vector<L>) -> S::Vector<L>;
+
+    /// Relative velocity of b as seen from a, with what the deformation adds at this separation.
+    fn carried<L: Lane>(&self, separation: S::Vector<L>, velocity: S::Vector<L>) -> S::Vector<L>;
 
     /// Nearest image of a separation, for the neighbour lists [d].
     fn separation(&self, separation: [f64; 3]) -> [f64; 3] {

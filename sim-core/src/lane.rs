@@ -1,31 +1,95 @@
 //! Lanes: the number type the laws are written in, once.
 //!
-//! A [`Lane`] is one `f64` (oracle, observation, machines without AVX2) or four (the kernel). Every operation is a
-//! single IEEE operation with the same operands in both, so a trajectory has the same bits on either path. Fused
-//! multiply-add is explicit ([`Lane::mul_add`]) and used at the same places by construction.
+//! A [`Lane`] is one number (oracle, observation, machines without AVX2) or a register full of them (the kernel). Every
+//! operation is a single IEEE operation with the same operands in both, so a trajectory has the same bits on either path.
+//! Fused multiply-add is explicit ([`Lane::mul_add`]) and used at the same places by construction.
 //!
-//! Contact memory is stored in groups of [`GROUP`] contacts: slot k of lane l lies at `k * GROUP + l`.
+//! What is not a position is kept in a [`Number`] of the run's choice: `f64`, four in a register, or `f32`, eight in a
+//! register (mixed precision). Positions are `f64` always, and so is everything up to how far two of them are apart.
+//!
+//! Contact memory is stored in groups of [`Number::GROUP`] contacts: slot k of lane l lies at `k * GROUP + l`.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
+#[cfg(target_arch = "x86_64")]
+mod avx2_single;
+mod gather;
 mod scalar;
+#[cfg(target_arch = "x86_64")]
+mod two;
 
 #[cfg(target_arch = "x86_64")]
 pub use avx2::Avx2;
+#[cfg(target_arch = "x86_64")]
+pub use avx2_single::Avx2Single;
+pub use gather::{Gather, MINUS, OPPOSITE, OTHER, Real, SAME};
+#[cfg(target_arch = "x86_64")]
+pub use two::Two;
 
-use crate::state::{Body, Force};
+/// Most contacts in one group.
+pub const WIDEST: usize = 8;
 
-/// Contacts in one group: the width of the widest lane type.
-pub const GROUP: usize = 4;
+/// What velocities, forces and memories of contacts are kept in.
+pub trait Number: Copy + Default + PartialEq + std::fmt::Debug + Into<f64> + Send + Sync + 'static {
+    /// Contacts in one group: numbers in the widest register.
+    const GROUP: usize;
+    /// Least relative difference by which a force at its bound is told from one below it [1].
+    const AT_BOUND: f64;
+    /// Part of the kernel name.
+    const NAME: &'static str;
+    /// Makes a body begin where it is fetched in the fewest pieces.
+    type Alignment: Copy + Default + PartialEq + std::fmt::Debug + Send + Sync + 'static;
+
+    /// The nearest number.
+    fn of(value: f64) -> Self;
+}
+
+/// Half a cache line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(align(32))]
+pub struct Aligned32;
+
+/// A cache line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(align(64))]
+pub struct Aligned64;
+
+impl Number for f64 {
+    const GROUP: usize = 4;
+    const AT_BOUND: f64 = 1e-12;
+    const NAME: &'static str = "";
+    /// A body of three rows of 32 bytes.
+    type Alignment = Aligned32;
+
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value
+    }
+}
+
+impl Number for f32 {
+    const GROUP: usize = 8;
+    const AT_BOUND: f64 = 1e-6;
+    const NAME: &'static str = "mixed+";
+    /// A body of 32 + 16 + 16 bytes.
+    type Alignment = Aligned64;
+
+    #[inline(always)]
+    fn of(value: f64) -> Self {
+        value as Self
+    }
+}
 
 /// A bundle of numbers that a law is evaluated for at once.
 pub trait Lane: Copy {
+    /// What it bundles.
+    type Scalar: Number;
     /// Result of a comparison, one truth value per number.
     type Mask: Copy;
-    /// Numbers in the bundle: 1 or [`GROUP`].
+    /// Numbers in the bundle: 1 or [`Number::GROUP`].
     const WIDTH: usize;
 
-    /// The same number everywhere.
+    /// The nearest number, everywhere.
     fn splat(value: f64) -> Self;
     /// self + other.
     fn add(self, other: Self) -> Self;
@@ -62,74 +126,10 @@ pub trait Lane: Copy {
     ///
     /// # Safety
     /// `from` points to `WIDTH` readable numbers.
-    unsafe fn load(from: *const f64) -> Self;
+    unsafe fn load(from: *const Self::Scalar) -> Self;
     /// Writes `WIDTH` numbers.
     ///
     /// # Safety
     /// `to` points to `WIDTH` writable numbers.
-    unsafe fn store(self, to: *mut f64);
-
-    /// Reads `WIDTH` numbers at scattered places of a table.
-    ///
-    /// # Safety
-    /// `at` points to `WIDTH` indices inside the table.
-    unsafe fn gather(table: *const f64, at: *const u32) -> Self;
-
-    /// Difference of one record of two bodies, `b − a`, component by component (the fourth one is dropped).
-    ///
-    /// # Safety
-    /// `a` and `b` point to `WIDTH` indices below the number of bodies; `FIELD` is 0 (position), 1 (velocity) or
-    /// 2 (spin).
-    unsafe fn difference<const FIELD: usize>(bodies: *const Body, a: *const u32, b: *const u32) -> [Self; 3];
-    /// Sum of one record of two bodies, `a + b`.
-    ///
-    /// # Safety
-    /// As for [`Lane::difference`].
-    unsafe fn sum<const FIELD: usize>(bodies: *const Body, a: *const u32, b: *const u32) -> [Self; 3];
-    /// One record of one body.
-    ///
-    /// # Safety
-    /// As for [`Lane::difference`].
-    unsafe fn record<const FIELD: usize>(bodies: *const Body, a: *const u32) -> [Self; 3];
-    /// Adds to one record of a force, lane after lane: `FIELD` 0 is the force, 1 the torque.
-    ///
-    /// # Safety
-    /// `at` points to `WIDTH` indices of writable forces.
-    unsafe fn scatter<const FIELD: usize>(forces: *mut Force, at: *const u32, value: [Self; 3]);
-    /// Adds `value` to the force (`FIELD` 0) or torque (1) of `a` and, lane after lane, subtracts it from that of `b`
-    /// (`MODE` [`OPPOSITE`]), adds it ([`SAME`]), adds `other` ([`OTHER`]) or subtracts `other` ([`MINUS`]).
-    ///
-    /// # Safety
-    /// `a` and `b` point to `WIDTH` indices of writable forces in `of_a` and `of_b`.
-    unsafe fn scatter_pair<const FIELD: usize, const MODE: u8>(
-        of_a: *mut Force,
-        a: *const u32,
-        of_b: *mut Force,
-        b: *const u32,
-        value: [Self; 3],
-        other: [Self; 3],
-    );
-    /// Both records of a pair in one go, lane after lane: adds `force` and `torque_a` to the forces of `a`, subtracts
-    /// `force` from those of `b` and adds to them `torque_a` (`MODE` [`SAME`]) or `torque_b` ([`OTHER`]).
-    ///
-    /// # Safety
-    /// As for [`Lane::scatter_pair`].
-    unsafe fn scatter_contact<const MODE: u8>(
-        of_a: *mut Force,
-        a: *const u32,
-        of_b: *mut Force,
-        b: *const u32,
-        force: [Self; 3],
-        torque_a: [Self; 3],
-        torque_b: [Self; 3],
-    );
+    unsafe fn store(self, to: *mut Self::Scalar);
 }
-
-/// See [`Lane::scatter_pair`].
-pub const OPPOSITE: u8 = 0;
-/// See [`Lane::scatter_pair`].
-pub const SAME: u8 = 1;
-/// See [`Lane::scatter_pair`].
-pub const OTHER: u8 = 2;
-/// See [`Lane::scatter_pair`].
-pub const MINUS: u8 = 3;

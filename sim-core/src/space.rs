@@ -8,7 +8,7 @@ pub use planar::Planar;
 pub use spatial::{Spatial, SpatialSlide, twist};
 pub use vector::{V1, V2, V3, Vector};
 
-use crate::lane::Lane;
+use crate::lane::{Lane, Real};
 use crate::state::Body;
 
 /// What two bodies do past each other: what [`Space::slide`] needs.
@@ -33,6 +33,8 @@ pub struct Passing<S: Space, L: Lane> {
 /// Dimension, vectors and rotations. Records in memory always have three components; a planar system leaves the
 /// third one of positions and the first two of spins at zero and never computes with them.
 pub trait Space: Copy + Send + Sync + 'static {
+    /// What velocities, forces and memories of contacts are kept in.
+    type Real: Real;
     /// Dimension.
     const DIMENSION: usize;
     /// A displacement, velocity or force.
@@ -75,9 +77,9 @@ pub trait Space: Copy + Send + Sync + 'static {
 
     /// Rows of a body. In the plane the spin is the third number of the row of the velocity: one row to move, one to
     /// read.
-    fn body(position: [f64; 3], velocity: [f64; 3], spin: [f64; 3]) -> Body;
+    fn body(position: [f64; 3], velocity: [f64; 3], spin: [f64; 3]) -> Body<Self::Real>;
     /// Velocity and spin of a body [d/τ, 1/τ].
-    fn motion(body: &Body) -> ([f64; 3], [f64; 3]);
+    fn motion(body: &Body<Self::Real>) -> ([f64; 3], [f64; 3]);
     /// Row of a body that holds the spin.
     const SPIN_ROW: usize;
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 const UNSETTLED: [&str; 5] = ["step_limit", "not_converged", "unsettled", "failed", "running"];
 
 /// Scene keys besides those of [`Run`] that make two runs different points (all but the seed).
-const VARIANT_KEYS: [&str; 11] = [
+const VARIANT_KEYS: [&str; 12] = [
     "n",
     "mu",
     "kt_over_kn",
@@ -19,6 +19,7 @@ const VARIANT_KEYS: [&str; 11] = [
     "clamp_viscous",
     "scale_wall_mass",
     "approach",
+    "precision",
 ];
 
 /// One finished run: scene in SI units and what was observed.

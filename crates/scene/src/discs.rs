@@ -10,6 +10,8 @@ mod reduce;
 
 use serde::{Deserialize, Serialize};
 
+use crate::Precision;
+
 /// How the first equilibrium state is made from the hard-disc fluid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -83,6 +85,8 @@ pub struct Discs {
     pub dt: Option<f64>,
     /// Time after which a state without equilibrium ends the run [T0].
     pub max_time: f64,
+    /// What is kept in single precision.
+    pub precision: Precision,
 }
 
 /// Cohesive discs in units a = m = K_N = 1, time unit √(m/K_N); every default resolved.
@@ -136,6 +140,9 @@ pub struct ReducedDiscs {
     pub dt: f64,
     /// Time after which a state without equilibrium ends the run [T0].
     pub max_time: f64,
+    /// What is kept in single precision.
+    #[serde(default, skip_serializing_if = "Precision::is_double")]
+    pub precision: Precision,
 }
 
 /// Sweeps after which pairs and long waves are those of the fluid, from insertion and from a lattice alike

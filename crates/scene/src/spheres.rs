@@ -7,7 +7,7 @@ mod reduce;
 
 use serde::{Deserialize, Serialize};
 
-use crate::round12;
+use crate::{Precision, round12};
 
 /// Which mass enters the normal dashpot −2 α_n √(k_n m) δ̇_n.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -107,6 +107,8 @@ pub struct Spheres {
     pub stop: Stop,
     /// How equilibrium is sought.
     pub approach: Approach,
+    /// What is kept in single precision.
+    pub precision: Precision,
 }
 
 /// Cohesive spheres in units d = m = k_n = 1, time unit τ = √(m/k_n).
@@ -151,6 +153,9 @@ pub struct ReducedSpheres {
     pub stop: Stop,
     /// How equilibrium is sought.
     pub approach: Approach,
+    /// What is kept in single precision.
+    #[serde(default, skip_serializing_if = "Precision::is_double")]
+    pub precision: Precision,
 }
 
 impl Stop {

@@ -52,7 +52,7 @@ fn all_problems_come_at_once() {
 #[test]
 fn unknown_keys_get_the_nearest_name() {
     assert!(problem_with("sigmac", json!(1)).remedy.contains("did you mean \"sigma_c\""));
-    assert!(problem_with("friction", json!(1)).remedy.starts_with("known: "));
+    assert!(problem_with("colour", json!(1)).remedy.starts_with("known: "));
     assert!(problem_with("stop", json!("setled")).remedy.contains("did you mean \"settled\""));
     assert!(problem_with("damping_mass", json!("efective")).problem.contains("did you mean \"effective\""));
 }

@@ -14,11 +14,11 @@ impl<S: Space> Boundary<S> for Open {
     const DEFORMS: bool = false;
 
     #[inline(always)]
-    fn nearest<L: Lane>(
-        &self,
-        separation: S::Vector<L>,
-        velocity: S::Vector<L>,
-    ) -> (S::Vector<L>, S::Vector<L>) {
-        (separation, velocity)
+    fn nearest<L: Lane>(&self, separation: S::Vector<L>) -> S::Vector<L> {
+        separation
+    }
+    #[inline(always)]
+    fn carried<L: Lane>(&self, _: S::Vector<L>, velocity: S::Vector<L>) -> S::Vector<L> {
+        velocity
     }
 }

@@ -7,7 +7,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Boundary;
-use crate::lane::Lane;
+use crate::lane::{Lane, Real};
 use crate::space::{Planar, V2};
 
 /// Adding and subtracting 1.5 · 2⁵² rounds to the nearest whole number, ties to even, with the same bits everywhere.
@@ -85,25 +85,27 @@ impl PeriodicCell {
     }
 }
 
-impl Boundary<Planar> for PeriodicCell {
+impl<R: Real> Boundary<Planar<R>> for PeriodicCell {
     const DEFORMS: bool = true;
 
     #[inline(always)]
-    fn nearest<L: Lane>(&self, separation: V2<L>, velocity: V2<L>) -> (V2<L>, V2<L>) {
+    fn nearest<L: Lane>(&self, separation: V2<L>) -> V2<L> {
         let image = |axis: usize| {
             let (edge, inverse) = (self.edges[axis], 1.0 / self.edges[axis]);
             let along = separation.0[axis];
             let crossings = along.mul_add(L::splat(inverse), L::splat(ROUND)).sub(L::splat(ROUND));
             crossings.neg_mul_add(L::splat(edge), along)
         };
-        let (x, y) = (image(0), image(1));
-        let u = x.mul_add(L::splat(self.rate[0]), velocity.0[0]);
-        let v = y.mul_add(L::splat(self.rate[1]), velocity.0[1]);
-        (V2([x, y]), V2([u, v]))
+        V2([image(0), image(1)])
+    }
+    #[inline(always)]
+    fn carried<L: Lane>(&self, separation: V2<L>, velocity: V2<L>) -> V2<L> {
+        let ([x, y], [u, v]) = (separation.0, velocity.0);
+        V2([x.mul_add(L::splat(self.rate[0]), u), y.mul_add(L::splat(self.rate[1]), v)])
     }
 
     fn separation(&self, separation: [f64; 3]) -> [f64; 3] {
-        let (nearest, _) = self.nearest::<f64>(V2([separation[0], separation[1]]), V2([0.0; 2]));
+        let nearest = Boundary::<Planar<R>>::nearest::<f64>(self, V2([separation[0], separation[1]]));
         [nearest.0[0], nearest.0[1], 0.0]
     }
 

@@ -24,6 +24,7 @@ pub fn parameters(scene: &ReducedDiscs) -> DiscParameters {
         mu: scene.mu,
         kr: scene.kr,
         mu_r: scene.mu_r,
+        mixed: scene.precision == scene::Precision::Mixed,
     }
 }
 

@@ -30,7 +30,7 @@ pub trait Damping: Copy + Send + Sync + 'static {
         root_mass: L,
         share: L,
         active: L::Mask,
-        memory: *mut f64,
+        memory: *mut L::Scalar,
     ) -> L;
     /// Elastic and viscous force together.
     fn repulsion<L: Lane>(&self, elastic: L, viscous: L) -> L;

@@ -8,7 +8,7 @@ use super::normal::Normal;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
 use super::{Encounter, PairGeometry, PairMotion, Response};
-use crate::lane::{GROUP, Lane};
+use crate::lane::{Lane, Number};
 use crate::space::{Passing, Space, Vector};
 
 /// Normal, damping, attraction, tangential and rolling law of one kind of contact.
@@ -72,13 +72,18 @@ pub trait ContactLaw<S: Space>: Copy + Send + Sync + 'static {
         encounter: &Encounter<S, L>,
         spin_difference: S::Spin<L>,
         dt: L,
-        memory: *mut f64,
+        memory: *mut L::Scalar,
     ) -> (Response<S, L>, L::Mask);
     /// Cuts the tangential force of a contact and its memory back to the bound, where it exceeds it.
     ///
     /// # Safety
     /// As for [`ContactLaw::stretch`].
-    unsafe fn limit<L: Lane>(&self, overlap: L, tangential: S::Shear<L>, memory: *mut f64) -> S::Shear<L>;
+    unsafe fn limit<L: Lane>(
+        &self,
+        overlap: L,
+        tangential: S::Shear<L>,
+        memory: *mut L::Scalar,
+    ) -> S::Shear<L>;
     /// Its forces, updating its memory.
     ///
     /// # Safety
@@ -90,7 +95,7 @@ pub trait ContactLaw<S: Space>: Copy + Send + Sync + 'static {
         encounter: &Encounter<S, L>,
         spin_difference: S::Spin<L>,
         dt: L,
-        memory: *mut f64,
+        memory: *mut L::Scalar,
     ) -> Response<S, L> {
         // SAFETY: the caller vouches for the slots.
         unsafe {
@@ -111,7 +116,7 @@ pub trait ContactLaw<S: Space>: Copy + Send + Sync + 'static {
         geometry: &PairGeometry<S, L>,
         motion: &PairMotion<S, L>,
         dt: L,
-        memory: *mut f64,
+        memory: *mut L::Scalar,
     ) -> Response<S, L> {
         let encounter = self.encounter(geometry, motion, dt);
         // SAFETY: the caller vouches for the slots.
@@ -189,7 +194,7 @@ where
         encounter: &Encounter<S, L>,
         spin_difference: S::Spin<L>,
         dt: L,
-        memory: *mut f64,
+        memory: *mut L::Scalar,
     ) -> (Response<S, L>, L::Mask) {
         let PairGeometry { normal, overlap, root_mass, .. } = *geometry;
         let Encounter { approach, share, ref slide } = *encounter;
@@ -205,7 +210,14 @@ where
             // SAFETY: see above.
             unsafe {
                 let slide = slide.assume_init_ref();
-                self.tangential.stretch(normal, slide, elastic, active, dt, memory.add(D::SLOTS * GROUP))
+                self.tangential.stretch(
+                    normal,
+                    slide,
+                    elastic,
+                    active,
+                    dt,
+                    memory.add(D::SLOTS * L::Scalar::GROUP),
+                )
             }
         } else {
             (S::Shear::zero(), active)
@@ -218,7 +230,7 @@ where
                     elastic,
                     active,
                     dt,
-                    memory.add((D::SLOTS + T::SLOTS) * GROUP),
+                    memory.add((D::SLOTS + T::SLOTS) * L::Scalar::GROUP),
                 )
             }
         } else {
@@ -228,10 +240,19 @@ where
     }
 
     #[inline(always)]
-    unsafe fn limit<L: Lane>(&self, overlap: L, tangential: S::Shear<L>, memory: *mut f64) -> S::Shear<L> {
+    unsafe fn limit<L: Lane>(
+        &self,
+        overlap: L,
+        tangential: S::Shear<L>,
+        memory: *mut L::Scalar,
+    ) -> S::Shear<L> {
         // SAFETY: the caller vouches for the slots.
         unsafe {
-            self.tangential.limit(tangential, self.normal.elastic(overlap), memory.add(D::SLOTS * GROUP))
+            self.tangential.limit(
+                tangential,
+                self.normal.elastic(overlap),
+                memory.add(D::SLOTS * L::Scalar::GROUP),
+            )
         }
     }
 

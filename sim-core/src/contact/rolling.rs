@@ -28,7 +28,7 @@ pub trait Rolling<S: Space>: Copy + Send + Sync + 'static {
         elastic: L,
         active: L::Mask,
         dt: L,
-        memory: *mut f64,
+        memory: *mut L::Scalar,
     ) -> S::Spin<L>;
     /// Rolling stiffness, for the time step [k_n d²].
     fn stiffness(&self) -> f64;

@@ -37,7 +37,7 @@ pub trait Tangential<S: Space>: Copy + Send + Sync + 'static {
         elastic: L,
         active: L::Mask,
         dt: L,
-        memory: *mut f64,
+        memory: *mut L::Scalar,
     ) -> (S::Shear<L>, L::Mask);
     /// Cuts a force that came from [`Tangential::stretch`] back to its bound where it exceeds it, and its memory; all
     /// else stays to the last bit.
@@ -45,7 +45,7 @@ pub trait Tangential<S: Space>: Copy + Send + Sync + 'static {
     /// # Safety
     /// As for [`Tangential::stretch`].
     #[inline(always)]
-    unsafe fn limit<L: Lane>(&self, force: S::Shear<L>, _elastic: L, _memory: *mut f64) -> S::Shear<L> {
+    unsafe fn limit<L: Lane>(&self, force: S::Shear<L>, _elastic: L, _memory: *mut L::Scalar) -> S::Shear<L> {
         force
     }
     /// k_t, for the time step [k_n].

@@ -6,7 +6,7 @@ use super::lists::point;
 use super::probe::MOST_SLOTS;
 use crate::boundary::{CellControl, PeriodicCell};
 use crate::contact::ContactLaw;
-use crate::lane::GROUP;
+use crate::lane::{Real, WIDEST};
 use crate::observables::disc_contacts::DiscContact;
 use crate::space::{Planar, Space};
 use crate::state::{Force, Grains};
@@ -67,7 +67,7 @@ pub struct CellPicture {
     pub potential: [f64; 4],
 }
 
-impl<G: Grains, C: ContactLaw<Planar>> CellDynamics for Dem<Planar, G, PeriodicCell, C> {
+impl<R: Real, G: Grains, C: ContactLaw<Planar<R>>> CellDynamics for Dem<Planar<R>, G, PeriodicCell, C> {
     fn cell(&self) -> &PeriodicCell {
         &self.boundary
     }
@@ -84,28 +84,30 @@ impl<G: Grains, C: ContactLaw<Planar>> CellDynamics for Dem<Planar, G, PeriodicC
     }
 
     fn residuals(&self) -> CellResiduals {
-        let mut forces = vec![Force::default(); self.len()];
+        let mut forces = vec![Force::<f64>::default(); self.len()];
         let mut virial = [0.0; 2];
         let mut sliding = 0;
         let mut pairs = Vec::new();
         self.each_contact(|a, b, contact| {
-            let force = Planar::vector_record(contact.force);
-            let separation = Planar::vector_record(contact.separation);
-            let torques = [Planar::spin_record(contact.torque_a), Planar::spin_record(contact.torque_b)];
+            let force: [f64; 3] = Planar::<R>::vector_record(contact.force).map(R::into);
+            let separation = Planar::<R>::vector_record(contact.separation);
+            let torques: [f64; 2] = [contact.torque_a, contact.torque_b].map(|torque| torque.0[0].into());
             for axis in 0..2 {
                 forces[a as usize].force[axis] += force[axis];
                 forces[b as usize].force[axis] -= force[axis];
                 virial[axis] -= force[axis] * separation[axis];
             }
-            forces[a as usize].torque[2] += torques[0][2];
-            forces[b as usize].torque[2] += torques[1][2];
+            forces[a as usize].torque[2] += torques[0];
+            forces[b as usize].torque[2] += torques[1];
             let response = &contact.response;
-            if contact.overlap > 0.0 || response.attraction > 0.0 {
+            let [overlap, elastic, attraction]: [f64; 3] =
+                [contact.overlap, response.elastic, response.attraction].map(R::into);
+            if overlap > 0.0 || attraction > 0.0 {
                 let (i, j) = (self.original[a as usize], self.original[b as usize]);
-                pairs.push((i.min(j), i.max(j), response.elastic - response.attraction));
-                let bound = self.law.bound(response.elastic);
-                let shear = response.tangential.0[0].abs();
-                sliding += usize::from(shear > 0.0 && shear >= bound * (1.0 - 1e-9));
+                pairs.push((i.min(j), i.max(j), elastic - attraction));
+                let bound = self.law.bound(elastic);
+                let shear = response.tangential.0[0].into().abs();
+                sliding += usize::from(shear > 0.0 && shear >= bound * (1.0 - R::AT_BOUND.max(1e-9)));
             }
         });
         let count = self.len();
@@ -119,7 +121,7 @@ impl<G: Grains, C: ContactLaw<Planar>> CellDynamics for Dem<Planar, G, PeriodicC
         };
         for (slot, (body, force)) in self.bodies.iter().zip(&forces).enumerate() {
             let disc = self.original[slot] as usize;
-            let [u, v, w, _] = body.velocity;
+            let [u, v, w, _] = body.velocity.map(R::into);
             residuals.forces[disc] = libm::hypot(force.force[0], force.force[1]);
             residuals.moments[disc] = force.torque[2].abs();
             residuals.kinetic[disc] =
@@ -142,29 +144,32 @@ impl<G: Grains, C: ContactLaw<Planar>> CellDynamics for Dem<Planar, G, PeriodicC
         };
         for (slot, body) in self.bodies.iter().enumerate() {
             let disc = self.original[slot] as usize;
-            let inside = crate::boundary::Boundary::<Planar>::inside(&self.boundary, point(body));
+            let inside = crate::boundary::Boundary::<Planar<R>>::inside(&self.boundary, point(body));
             picture.positions[disc] = [inside[0], inside[1]];
             picture.radii[disc] = self.grains.radius(slot);
-            picture.velocities[disc] = [body.velocity[0], body.velocity[1]];
-            picture.spins[disc] = body.velocity[2];
+            let [u, v, spin, _] = body.velocity.map(R::into);
+            picture.velocities[disc] = [u, v];
+            picture.spins[disc] = spin;
         }
         self.each_contact(|a, b, contact| {
             let response = &contact.response;
-            if contact.overlap <= 0.0 && response.attraction <= 0.0 {
+            let [overlap, elastic, attraction]: [f64; 3] =
+                [contact.overlap, response.elastic, response.attraction].map(R::into);
+            if overlap <= 0.0 && attraction <= 0.0 {
                 return;
             }
             let (i, j) = (self.original[a as usize], self.original[b as usize]);
-            let separation = Planar::vector_record(contact.separation);
+            let separation = Planar::<R>::vector_record(contact.separation);
             let sign = if i < j { 1.0 } else { -1.0 };
             picture.contacts.push(DiscContact {
                 i: i.min(j),
                 j: i.max(j),
-                gap: -contact.overlap,
+                gap: -overlap,
                 branch: [sign * separation[0], sign * separation[1]],
-                normal: response.elastic - response.attraction,
+                normal: elastic - attraction,
                 // Along t = (−n_y, n_x): reversing n and the force leaves it as it is.
-                tangential: response.tangential.0[0],
-                rolling: sign * Planar::spin_record(response.rolling)[2],
+                tangential: response.tangential.0[0].into(),
+                rolling: sign * response.rolling.0[0].into(),
             });
         });
         picture.contacts.sort_unstable_by_key(|contact| (contact.i, contact.j));
@@ -193,23 +198,23 @@ impl<G: Grains, C: ContactLaw<Planar>> CellDynamics for Dem<Planar, G, PeriodicC
     }
 }
 
-impl<G: Grains, C: ContactLaw<Planar>> Dem<Planar, G, PeriodicCell, C> {
+impl<R: Real, G: Grains, C: ContactLaw<Planar<R>>> Dem<Planar<R>, G, PeriodicCell, C> {
     /// Evaluates every listed contact once on a copy of its memory.
-    fn each_contact(&self, mut visit: impl FnMut(u32, u32, &super::kernel::Evaluated<Planar, f64>)) {
+    fn each_contact(&self, mut visit: impl FnMut(u32, u32, &super::kernel::Evaluated<Planar<R>, R>)) {
         let pass = self.pass(std::ptr::null_mut());
-        let mut memory = [0.0; MOST_SLOTS * GROUP];
+        let mut memory = [R::default(); MOST_SLOTS * WIDEST];
         assert!(C::SLOTS <= MOST_SLOTS, "a law remembers at most {MOST_SLOTS} numbers");
         for chunk in &self.chunks {
             for list in [&chunk.inner, &chunk.outer] {
                 for k in 0..list.count {
                     let (a, b) = list.pair(k);
                     for slot in 0..C::SLOTS {
-                        memory[slot * GROUP] = list.slot(k, slot);
+                        memory[slot * R::GROUP] = list.slot(k, slot);
                     }
-                    let constants = super::kernel::constants_of(&self.grains, a, b);
+                    let constants = super::kernel::constants_of::<G, R>(&self.grains, a, b);
                     // SAFETY: the list holds valid slots, the copy of the memory has room for one lane.
                     let contact = unsafe {
-                        pass.pair::<f64>(&raw const a, &raw const b, memory.as_mut_ptr(), constants.as_ptr())
+                        pass.pair::<R>(&raw const a, &raw const b, memory.as_mut_ptr(), constants.as_ptr())
                     };
                     visit(a, b, &contact);
                 }

@@ -12,6 +12,7 @@ use crate::contact::normal::Hooke;
 use crate::contact::rolling::{NoRolling, Rolling, SpringSlider};
 use crate::contact::tangential::{Frictionless, PlanarSpring, Tangential};
 use crate::contact::{ContactLaw, Law};
+use crate::lane::Real;
 use crate::space::Planar;
 use crate::state::Discs;
 use crate::{Options, SimError};
@@ -36,6 +37,8 @@ pub struct DiscParameters {
     pub kr: f64,
     /// μ_R [a].
     pub mu_r: f64,
+    /// Whether velocities, forces and contact memories are kept in single precision.
+    pub mixed: bool,
 }
 
 /// Where a system of discs starts.
@@ -68,7 +71,7 @@ pub fn discs(
     dt: f64,
     options: &Options,
 ) -> Box<dyn CellDynamics> {
-    choose_damping(parameters, Source::Initial { initial, dt }, options)
+    choose_precision(parameters, Source::Initial { initial, dt }, options)
         .expect("an initial state needs no decoding")
 }
 
@@ -88,7 +91,7 @@ pub fn restore_discs(
         return Err(SimError::Checkpoint("particle state: another number of discs".to_owned()));
     }
     let kernel = saved.kernel.clone();
-    let dem = choose_damping(parameters, Source::Saved { saved: Box::new(saved), radii }, options)?;
+    let dem = choose_precision(parameters, Source::Saved { saved: Box::new(saved), radii }, options)?;
     if dem.kernel().split(';').next() != Some(kernel.as_str()) {
         return Err(SimError::Checkpoint(format!(
             "state of kernel {kernel:?}, these parameters need {:?}",
@@ -100,16 +103,24 @@ pub fn restore_discs(
 
 type Compiled = Result<Box<dyn CellDynamics>, SimError>;
 
-fn choose_damping(parameters: &DiscParameters, source: Source<'_>, options: &Options) -> Compiled {
-    if parameters.restitution == 1.0 {
-        choose_attraction(parameters, source, options, NoDamping)
+fn choose_precision(parameters: &DiscParameters, source: Source<'_>, options: &Options) -> Compiled {
+    if parameters.mixed {
+        choose_damping::<f32>(parameters, source, options)
     } else {
-        let dashpot = Lagged::new(damping_ratio(parameters.restitution), KN);
-        choose_attraction(parameters, source, options, dashpot)
+        choose_damping::<f64>(parameters, source, options)
     }
 }
 
-fn choose_attraction<D: Damping>(
+fn choose_damping<P: Real>(parameters: &DiscParameters, source: Source<'_>, options: &Options) -> Compiled {
+    if parameters.restitution == 1.0 {
+        choose_attraction::<P, _>(parameters, source, options, NoDamping)
+    } else {
+        let dashpot = Lagged::new(damping_ratio(parameters.restitution), KN);
+        choose_attraction::<P, _>(parameters, source, options, dashpot)
+    }
+}
+
+fn choose_attraction<P: Real, D: Damping>(
     parameters: &DiscParameters,
     source: Source<'_>,
     options: &Options,
@@ -117,13 +128,13 @@ fn choose_attraction<D: Damping>(
 ) -> Compiled {
     if parameters.f0 != 0.0 {
         let attraction = FiniteRange { f0: parameters.f0, d0: parameters.d0 };
-        choose_friction(parameters, source, options, damping, attraction)
+        choose_friction::<P, _, _>(parameters, source, options, damping, attraction)
     } else {
-        choose_friction(parameters, source, options, damping, NoAttraction)
+        choose_friction::<P, _, _>(parameters, source, options, damping, NoAttraction)
     }
 }
 
-fn choose_friction<D: Damping, A: Attraction>(
+fn choose_friction<P: Real, D: Damping, A: Attraction>(
     parameters: &DiscParameters,
     source: Source<'_>,
     options: &Options,
@@ -132,16 +143,16 @@ fn choose_friction<D: Damping, A: Attraction>(
 ) -> Compiled {
     let friction = PlanarSpring { kt: parameters.kt, mu: parameters.mu };
     if parameters.kt == 0.0 || parameters.mu == 0.0 {
-        build(source, options, damping, attraction, Frictionless, NoRolling)
+        build::<P, _, _, _, _>(source, options, damping, attraction, Frictionless, NoRolling)
     } else if parameters.kr == 0.0 || parameters.mu_r == 0.0 {
-        build(source, options, damping, attraction, friction, NoRolling)
+        build::<P, _, _, _, _>(source, options, damping, attraction, friction, NoRolling)
     } else {
         let rolling = SpringSlider { kr: parameters.kr, mu_r: parameters.mu_r };
-        build(source, options, damping, attraction, friction, rolling)
+        build::<P, _, _, _, _>(source, options, damping, attraction, friction, rolling)
     }
 }
 
-fn build<D: Damping, A: Attraction, T: Tangential<Planar>, R: Rolling<Planar>>(
+fn build<P: Real, D: Damping, A: Attraction, T: Tangential<Planar<P>>, R: Rolling<Planar<P>>>(
     source: Source<'_>,
     options: &Options,
     damping: D,
@@ -150,7 +161,7 @@ fn build<D: Damping, A: Attraction, T: Tangential<Planar>, R: Rolling<Planar>>(
     rolling: R,
 ) -> Compiled
 where
-    Law<Hooke, D, A, T, R>: ContactLaw<Planar>,
+    Law<Hooke, D, A, T, R>: ContactLaw<Planar<P>>,
 {
     let law = Law { normal: Hooke { kn: KN }, damping, attraction, tangential, rolling };
     let path = Path::choose(options.kernel);
@@ -167,14 +178,16 @@ where
             };
             let cell = PeriodicCell::new(initial.edges, initial.control);
             let grains = Discs::new(initial.radii.clone());
-            Ok(Box::new(Dem::<Planar, _, _, _>::new(law, law, grains, cell, None, &state, dt, path, threads)))
+            Ok(Box::new(Dem::<Planar<P>, _, _, _>::new(
+                law, law, grains, cell, None, &state, dt, path, threads,
+            )))
         }
         Source::Saved { saved, radii } => {
             let cell: PeriodicCell = postcard::from_bytes(&saved.boundary)
                 .map_err(|error| SimError::Checkpoint(format!("periodic cell: {error}")))?;
             let by_slot = saved.original.iter().map(|&disc| radii[disc as usize]).collect();
             let grains = Discs::new(by_slot);
-            Ok(Box::new(Dem::<Planar, _, _, _>::from_persisted(
+            Ok(Box::new(Dem::<Planar<P>, _, _, _>::from_persisted(
                 law, law, grains, cell, *saved, path, threads,
             )))
         }

@@ -7,6 +7,7 @@ use super::engine::{Dem, set_motion};
 use super::lists::speed;
 use crate::boundary::Boundary;
 use crate::contact::ContactLaw;
+use crate::lane::Number;
 use crate::space::Space;
 use crate::state::{Body, ContactList, Force, Grains};
 
@@ -87,6 +88,8 @@ pub struct SphereParameters {
     pub wall_mass: f64,
     /// Which walls move: x low, x high, y low, … .
     pub moving: [bool; 6],
+    /// Whether velocities, forces and contact memories are kept in single precision.
+    pub mixed: bool,
 }
 
 impl SphereParameters {
@@ -106,6 +109,7 @@ impl SphereParameters {
             kt: 1.5,
             wall_mass: 96.0,
             moving: [false; 6],
+            mixed: false,
         }
     }
 }
@@ -237,9 +241,9 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dynamics for Dem<S, 
     }
 
     fn counters(&self) -> Counters {
-        let touching = |list: &ContactList| {
+        let touching = |list: &ContactList<S::Real>| {
             (0..list.count)
-                .filter(|&k| (0..C::SLOTS).any(|slot| list.slot(k, slot) != C::vacant(slot)))
+                .filter(|&k| (0..C::SLOTS).any(|slot| list.slot(k, slot) != S::Real::of(C::vacant(slot))))
                 .count() as u64
         };
         let mut counters = Counters {
@@ -253,8 +257,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dynamics for Dem<S, 
             counters.contacts = self.probe().pairs.len() as u64;
             counters.wall_contacts = self.probe().walls.len() as u64;
         }
-        let mut bytes = self.bodies.capacity() * size_of::<Body>()
-            + self.forces.capacity() * size_of::<Force>()
+        let mut bytes = self.bodies.capacity() * size_of::<Body<S::Real>>()
+            + self.forces.capacity() * size_of::<Force<S::Real>>()
             + self.lists.near_at.capacity() * size_of::<[f64; 3]>()
             + self.lists.budget.capacity() * size_of::<f64>()
             + self.lists.cells.bytes();

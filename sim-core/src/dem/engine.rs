@@ -9,6 +9,7 @@ use super::{Drag, InitialState};
 use crate::boundary::Boundary;
 use crate::contact::ContactLaw;
 use crate::control::ServoWalls;
+use crate::lane::Number;
 use crate::neighbour::CellList;
 use crate::space::Space;
 use crate::state::{Body, Chunk, Force, Grains, chunk_bounds};
@@ -28,15 +29,15 @@ pub struct Dem<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
     pub(super) dt: f64,
     pub(super) time: f64,
     /// By slot.
-    pub(super) bodies: Vec<Body>,
+    pub(super) bodies: Vec<Body<S::Real>>,
     /// Original number of the particle in each slot.
     pub(super) original: Vec<u32>,
     pub(super) drag: Drag,
     /// Rates by slot when the drag differs between particles.
     pub(super) drag_by_slot: Vec<f64>,
     // Lists and scratch: none of it changes a bit of the trajectory.
-    pub(super) forces: Vec<Force>,
-    pub(super) chunks: Vec<Chunk>,
+    pub(super) forces: Vec<Force<S::Real>>,
+    pub(super) chunks: Vec<Chunk<S::Real>>,
     pub(super) lists: Lists,
     pub(super) space: PhantomData<S>,
 }
@@ -103,14 +104,14 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         grains: G,
         boundary: B,
         walls: Option<ServoWalls>,
-        bodies: Vec<Body>,
+        bodies: Vec<Body<S::Real>>,
         original: Vec<u32>,
         dt: f64,
         path: Path,
         threads: usize,
     ) -> Self {
         let bounds = chunk_bounds(bodies.len());
-        let chunks: Vec<Chunk> =
+        let chunks: Vec<Chunk<S::Real>> =
             bounds.windows(2).map(|bound| Chunk::new(bound[0], bound[1], C::SLOTS)).collect();
         Self {
             law,
@@ -145,7 +146,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     }
 
     /// The force pass over the present state.
-    pub(super) fn pass(&self, forces: *mut Force) -> Pass<'_, S, G, B, C> {
+    pub(super) fn pass(&self, forces: *mut Force<S::Real>) -> Pass<'_, S, G, B, C> {
         Pass {
             law: &self.law,
             wall_law: &self.wall_law,
@@ -225,7 +226,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             for list in [&mut chunk.inner, &mut chunk.outer].into_iter().chain(&mut chunk.walls) {
                 for k in 0..list.count {
                     for slot in 0..C::TANGENTIAL_SLOT {
-                        *list.slot_mut(k, slot) = C::vacant(slot);
+                        *list.slot_mut(k, slot) = S::Real::of(C::vacant(slot));
                     }
                 }
             }
@@ -236,7 +237,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
 }
 
 /// Gives a body another velocity and spin.
-pub(super) fn set_motion<S: Space>(body: &mut Body, velocity: [f64; 3], spin: [f64; 3]) {
+pub(super) fn set_motion<S: Space>(body: &mut Body<S::Real>, velocity: [f64; 3], spin: [f64; 3]) {
     let [x, y, z, inverse_budget] = body.position;
     *body = S::body([x, y, z], velocity, spin);
     body.position[3] = inverse_budget;

@@ -14,7 +14,7 @@ pub use path::Path;
 use crate::boundary::Boundary;
 use crate::contact::ContactLaw;
 use crate::control::ServoWalls;
-use crate::lane::{GROUP, Lane};
+use crate::lane::{Gather, Lane, Number, Real, WIDEST};
 use crate::space::Space;
 use crate::state::{Body, Chunk, ContactList, Force, Grains};
 
@@ -31,9 +31,9 @@ pub struct Pass<'a, S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
     /// Walls, where there are any.
     pub walls: Option<&'a ServoWalls>,
     /// All bodies.
-    pub bodies: *const Body,
+    pub bodies: *const Body<S::Real>,
     /// All forces; a chunk writes those of its own particles alone.
-    pub forces: *mut Force,
+    pub forces: *mut Force<S::Real>,
     /// Time step [τ].
     pub dt: f64,
     /// The space.
@@ -42,15 +42,15 @@ pub struct Pass<'a, S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
 
 /// Where the constants of a contact lie.
 #[inline(always)]
-fn constants<G: Grains>(rows: *const f64, group: usize, lane: usize) -> *const f64 {
-    rows.wrapping_add(if G::CONSTANTS == 0 { 0 } else { group * 3 * GROUP + lane })
+fn constants<G: Grains, T: Number>(rows: *const T, group: usize, lane: usize) -> *const T {
+    rows.wrapping_add(if G::CONSTANTS == 0 { 0 } else { group * 3 * T::GROUP + lane })
 }
 
 /// The constants of one pair in the rows of a group, lane 0.
-pub fn constants_of<G: Grains>(grains: &G, a: u32, b: u32) -> [f64; 3 * GROUP] {
-    let mut rows = [0.0; 3 * GROUP];
+pub fn constants_of<G: Grains, T: Number>(grains: &G, a: u32, b: u32) -> [T; 3 * WIDEST] {
+    let mut rows = [T::default(); 3 * WIDEST];
     for (row, value) in grains.constants(a as usize, b as usize).into_iter().enumerate() {
-        rows[row * GROUP] = value;
+        rows[row * T::GROUP] = T::of(value);
     }
     rows
 }
@@ -60,10 +60,19 @@ pub fn constants_of<G: Grains>(grains: &G, a: u32, b: u32) -> [f64; 3 * GROUP] {
 /// cut in parts through small buffers in the first-level cache, several groups are in flight.
 const BATCH: usize = 16;
 
+/// Sum of the numbers of a bundle.
+#[inline(always)]
+fn wide_sum<L: Lane<Scalar = f64>>(of: L) -> f64 {
+    let mut lanes = [0.0; WIDEST];
+    // SAFETY: there is room for the widest lane.
+    unsafe { of.store(lanes.as_mut_ptr()) };
+    lanes.iter().sum()
+}
+
 /// Where the forces on b of the contacts of a list go.
 #[derive(Clone, Copy)]
-struct Targets {
-    forces: *mut Force,
+struct Targets<T: Number> {
+    forces: *mut Force<T>,
     /// Indices of the first group.
     at: *const u32,
     /// From one group to the next.
@@ -77,12 +86,17 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// The list holds valid indices and memory for its groups; the forces of its particles a and those of `targets`
     /// are writable and no other thread touches them.
     #[inline(always)]
-    unsafe fn contacts<L: Lane>(&self, list: &mut ContactList, targets: Targets) -> [f64; 2] {
-        let mut virial = [L::splat(0.0); 2];
+    unsafe fn contacts<L: Gather<Scalar = S::Real>>(
+        &self,
+        list: &mut ContactList<S::Real>,
+        targets: Targets<S::Real>,
+    ) -> [f64; 2] {
+        let group_of = <S::Real as Number>::GROUP;
+        let mut virial = [L::Wide::splat(0.0); 2];
         let mut rest = [0.0; 2];
-        let (indices, memory) = (list.indices.as_ptr().cast::<u32>(), list.memory.as_mut_ptr());
+        let (indices, memory) = (list.indices.as_ptr(), list.memory.as_mut_ptr());
         let rows = list.constants.as_ptr();
-        let groups = if L::WIDTH == GROUP { list.count / GROUP } else { 0 };
+        let groups = if L::WIDTH == group_of { list.count / group_of } else { 0 };
         let mut first = 0;
         while first < groups {
             let count = if groups - first < BATCH { groups - first } else { BATCH };
@@ -91,29 +105,25 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             virial = [virial[0].add(own[0]), virial[1].add(own[1])];
             first += count;
         }
-        for k in groups * GROUP..list.count {
-            let (group, lane) = (k / GROUP, k % GROUP);
+        for k in groups * group_of..list.count {
+            let (group, lane) = (k / group_of, k % group_of);
             // SAFETY: contact k is in the list.
             unsafe {
-                let a = indices.add(group * 2 * GROUP + lane);
-                let memory = memory.add(group * C::SLOTS * GROUP + lane);
-                let contact = self.pair::<f64>(a, a.add(GROUP), memory, constants::<G>(rows, group, lane));
+                let a = indices.add(group * 2 * group_of + lane);
+                let memory = memory.add(group * C::SLOTS * group_of + lane);
+                let constants = constants::<G, S::Real>(rows, group, lane);
+                let contact = self.pair::<S::Real>(a, a.add(group_of), memory, constants);
                 let target = targets.at.add(group * targets.stride + lane);
-                let own = self.apply::<f64>(a, targets.forces, target, &contact);
-                rest[0] += own[0];
-                rest[1] += own[1];
+                let own = self.apply::<S::Real>(a, targets.forces, target, &contact);
+                rest[0] += wide_sum(own[0]);
+                rest[1] += wide_sum(own[1]);
             }
         }
         if !B::DEFORMS {
             return rest;
         }
         // Exact sums: any order gives the same bits.
-        std::array::from_fn(|axis| {
-            let mut lanes = [0.0; GROUP];
-            // SAFETY: there is room for the widest lane.
-            unsafe { virial[axis].store(lanes.as_mut_ptr()) };
-            rest[axis] + ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3]))
-        })
+        std::array::from_fn(|axis| rest[axis] + wide_sum(virial[axis]))
     }
 
     /// Groups `first..first + count`, part by part.
@@ -121,16 +131,17 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// # Safety
     /// As for `contacts`; the groups are full and at most [`BATCH`].
     #[inline(always)]
-    unsafe fn batch<L: Lane>(
+    unsafe fn batch<L: Gather<Scalar = S::Real>>(
         &self,
         indices: *const u32,
-        memory: *mut f64,
-        rows: *const f64,
-        targets: Targets,
+        memory: *mut S::Real,
+        rows: *const S::Real,
+        targets: Targets<S::Real>,
         first: usize,
         count: usize,
-    ) -> [L; 2] {
-        let mut virial = [L::splat(0.0); 2];
+    ) -> [L::Wide; 2] {
+        let group_of = <S::Real as Number>::GROUP;
+        let mut virial = [L::Wide::splat(0.0); 2];
         let mut meetings = [const { MaybeUninit::<Meeting<S, L>>::uninit() }; BATCH];
         let mut moving = [const { MaybeUninit::<Moving<S, L>>::uninit() }; BATCH];
         let (meetings, moving) = (meetings.as_mut_ptr(), moving.as_mut_ptr());
@@ -138,15 +149,15 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         unsafe {
             let mut k = 0;
             while k < count {
-                let a = indices.add((first + k) * 2 * GROUP);
-                let constants = constants::<G>(rows, first + k, 0);
-                meetings.add(k).write(MaybeUninit::new(self.meet::<L>(a, a.add(GROUP), constants)));
+                let a = indices.add((first + k) * 2 * group_of);
+                let constants = constants::<G, S::Real>(rows, first + k, 0);
+                meetings.add(k).write(MaybeUninit::new(self.meet::<L>(a, a.add(group_of), constants)));
                 k += 1;
             }
             k = 0;
             while k < count {
                 let meeting = (*meetings.add(k)).assume_init_ref();
-                let constants = constants::<G>(rows, first + k, 0);
+                let constants = constants::<G, S::Real>(rows, first + k, 0);
                 moving.add(k).write(MaybeUninit::new(self.move_on::<L>(meeting, constants)));
                 k += 1;
             }
@@ -157,8 +168,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             while k < count {
                 let (meeting, moving) =
                     ((*meetings.add(k)).assume_init_ref(), (*moving.add(k)).assume_init_ref());
-                let memory = memory.add((first + k) * C::SLOTS * GROUP);
-                let constants = constants::<G>(rows, first + k, 0);
+                let memory = memory.add((first + k) * C::SLOTS * group_of);
+                let constants = constants::<G, S::Real>(rows, first + k, 0);
                 let contact = self.respond::<L>(meeting, moving, memory, constants);
                 self.apply_group::<L>(indices, targets, first + k, &contact, &mut virial);
                 k += 1;
@@ -173,18 +184,19 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// As for `batch`; the first two parts are done.
     #[inline(always)]
     #[expect(clippy::too_many_arguments, reason = "the second half of `batch`, with its buffers")]
-    unsafe fn limited<L: Lane>(
+    unsafe fn limited<L: Gather<Scalar = S::Real>>(
         &self,
         indices: *const u32,
-        memory: *mut f64,
-        rows: *const f64,
-        targets: Targets,
+        memory: *mut S::Real,
+        rows: *const S::Real,
+        targets: Targets<S::Real>,
         first: usize,
         count: usize,
         meetings: *mut MaybeUninit<Meeting<S, L>>,
         moving: *mut MaybeUninit<Moving<S, L>>,
-    ) -> [L; 2] {
-        let mut virial = [L::splat(0.0); 2];
+    ) -> [L::Wide; 2] {
+        let group_of = <S::Real as Number>::GROUP;
+        let mut virial = [L::Wide::splat(0.0); 2];
         let mut pressed = [const { MaybeUninit::<Pressed<S, L>>::uninit() }; BATCH];
         // Groups with contacts that slide. Which ones do, nobody can predict; so they are noted without a branch.
         let mut sliding = [0_usize; BATCH + 1];
@@ -196,8 +208,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             while k < count {
                 let (meeting, moving) =
                     ((*meetings.add(k)).assume_init_ref(), (*moving.add(k)).assume_init_ref());
-                let memory = memory.add((first + k) * C::SLOTS * GROUP);
-                let constants = constants::<G>(rows, first + k, 0);
+                let memory = memory.add((first + k) * C::SLOTS * group_of);
+                let constants = constants::<G, S::Real>(rows, first + k, 0);
                 let (contact, slide) = self.press::<L>(meeting, moving, memory, constants);
                 pressed.add(k).write(MaybeUninit::new(contact));
                 *noted.add(slides) = k;
@@ -206,14 +218,15 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             }
             for &k in sliding.get_unchecked(..slides) {
                 let meeting = (*meetings.add(k)).assume_init_ref();
-                let memory = memory.add((first + k) * C::SLOTS * GROUP);
+                let memory = memory.add((first + k) * C::SLOTS * group_of);
                 self.limit::<L>(meeting, (*pressed.add(k)).assume_init_mut(), memory);
             }
             k = 0;
             while k < count {
                 let (meeting, pressed) =
                     ((*meetings.add(k)).assume_init_ref(), (*pressed.add(k)).assume_init_ref());
-                let contact = self.resolve::<L>(meeting, pressed, constants::<G>(rows, first + k, 0));
+                let contact =
+                    self.resolve::<L>(meeting, pressed, constants::<G, S::Real>(rows, first + k, 0));
                 self.apply_group::<L>(indices, targets, first + k, &contact, &mut virial);
                 k += 1;
             }
@@ -226,17 +239,18 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// # Safety
     /// As for `batch`.
     #[inline(always)]
-    unsafe fn apply_group<L: Lane>(
+    unsafe fn apply_group<L: Gather<Scalar = S::Real>>(
         &self,
         indices: *const u32,
-        targets: Targets,
+        targets: Targets<S::Real>,
         group: usize,
         contact: &Evaluated<S, L>,
-        virial: &mut [L; 2],
+        virial: &mut [L::Wide; 2],
     ) {
         // SAFETY: the caller vouches for the indices.
         let own = unsafe {
-            let (a, target) = (indices.add(group * 2 * GROUP), targets.at.add(group * targets.stride));
+            let (a, target) =
+                (indices.add(group * 2 * <S::Real as Number>::GROUP), targets.at.add(group * targets.stride));
             self.apply::<L>(a, targets.forces, target, contact)
         };
         if B::DEFORMS {
@@ -250,7 +264,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// The lists of the chunk hold valid indices; the forces of its particles are writable and no other thread
     /// touches them; bodies are not written meanwhile.
     #[inline(always)]
-    unsafe fn chunk<L: Lane>(&self, chunk: &mut Chunk) {
+    unsafe fn chunk<L: Gather<Scalar = S::Real>>(&self, chunk: &mut Chunk<S::Real>) {
         // Laws on the stack: what they derive from their parameters is worked out once, not after every store.
         let (law, wall_law) = (*self.law, *self.wall_law);
         // SAFETY: the caller vouches.
@@ -259,11 +273,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
 
     /// See `chunk`.
     #[inline(always)]
-    unsafe fn chunk_with_own_laws<L: Lane>(&self, chunk: &mut Chunk) {
+    unsafe fn chunk_with_own_laws<L: Gather<Scalar = S::Real>>(&self, chunk: &mut Chunk<S::Real>) {
+        let group_of = <S::Real as Number>::GROUP;
         let inner = Targets {
             forces: self.forces,
-            at: chunk.inner.indices.as_ptr().cast::<u32>().wrapping_add(GROUP),
-            stride: 2 * GROUP,
+            at: chunk.inner.indices.as_ptr().wrapping_add(group_of),
+            stride: 2 * group_of,
         };
         // SAFETY: the list holds valid indices of this chunk.
         let of_inner = unsafe { self.contacts::<L>(&mut chunk.inner, inner) };
@@ -271,22 +286,23 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         if let Some(walls) = self.walls {
             for wall in 0..6 {
                 let list = &mut chunk.walls[wall];
-                let mut sum = 0.0;
-                let groups = if L::WIDTH == GROUP { list.count / GROUP } else { 0 };
+                let mut sum = 0.0_f64;
+                let groups = if L::WIDTH == group_of { list.count / group_of } else { 0 };
                 for group in 0..groups {
-                    let mut normal = [0.0; GROUP];
+                    let mut normal = [S::Real::default(); WIDEST];
                     // SAFETY: the group is full.
                     unsafe {
                         let contact = self.wall_contact::<L>(walls, wall, list, group, 0);
                         contact.store(normal.as_mut_ptr());
                     }
-                    for part in normal {
-                        sum += part;
+                    for &part in &normal[..L::WIDTH] {
+                        sum += part.into();
                     }
                 }
-                for k in groups * GROUP..list.count {
+                for k in groups * group_of..list.count {
+                    let (group, lane) = (k / group_of, k % group_of);
                     // SAFETY: contact k is in the list.
-                    sum += unsafe { self.wall_contact::<f64>(walls, wall, list, k / GROUP, k % GROUP) };
+                    sum += unsafe { self.wall_contact::<S::Real>(walls, wall, list, group, lane) }.into();
                 }
                 chunk.wall_force[wall] = sum;
             }
@@ -295,8 +311,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         chunk.ghosts.forces.fill(Force::default());
         let outer = Targets {
             forces: chunk.ghosts.forces.as_mut_ptr(),
-            at: chunk.ghosts.targets.as_ptr().cast::<u32>(),
-            stride: GROUP,
+            at: chunk.ghosts.targets.as_ptr(),
+            stride: group_of,
         };
         // SAFETY: the list holds valid indices and there is a ghost for every b.
         let of_outer = unsafe { self.contacts::<L>(&mut chunk.outer, outer) };
@@ -309,11 +325,11 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     ///
     /// # Safety
     /// As for `chunk`; `path` was chosen by [`Path::choose`] on this machine.
-    pub unsafe fn run(&self, path: Path, chunk: &mut Chunk) {
+    pub unsafe fn run(&self, path: Path, chunk: &mut Chunk<S::Real>) {
         // SAFETY: the caller vouches; the path was detected.
         unsafe {
             match path {
-                Path::Plain => self.chunk::<f64>(chunk),
+                Path::Plain => self.chunk::<S::Real>(chunk),
                 #[cfg(target_arch = "x86_64")]
                 Path::PlainFma => self.run_plain_fma(chunk),
                 #[cfg(target_arch = "x86_64")]
@@ -324,15 +340,15 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "fma")]
-    unsafe fn run_plain_fma(&self, chunk: &mut Chunk) {
+    unsafe fn run_plain_fma(&self, chunk: &mut Chunk<S::Real>) {
         // SAFETY: the caller vouches.
-        unsafe { self.chunk::<f64>(chunk) }
+        unsafe { self.chunk::<S::Real>(chunk) }
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
-    unsafe fn run_avx2(&self, chunk: &mut Chunk) {
+    unsafe fn run_avx2(&self, chunk: &mut Chunk<S::Real>) {
         // SAFETY: the caller vouches.
-        unsafe { self.chunk::<crate::lane::Avx2>(chunk) }
+        unsafe { self.chunk::<<S::Real as Real>::Fast>(chunk) }
     }
 }

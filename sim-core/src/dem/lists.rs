@@ -3,6 +3,7 @@
 use super::engine::Dem;
 use crate::boundary::Boundary;
 use crate::contact::ContactLaw;
+use crate::lane::Number;
 use crate::neighbour::spatial_order;
 use crate::space::Space;
 use crate::state::{Body, ContactList, Grains};
@@ -26,10 +27,14 @@ pub(super) struct Carried {
 impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     /// Contacts with something to remember: pairs and wall contacts, by slot.
     pub(super) fn carried(&self) -> (Vec<Carried>, Vec<Carried>) {
-        let collect = |list: &ContactList, wall: Option<u32>, into: &mut Vec<Carried>| {
+        let collect = |list: &ContactList<S::Real>, wall: Option<u32>, into: &mut Vec<Carried>| {
             for k in 0..list.count {
-                let memory: Vec<f64> = (0..C::SLOTS).map(|slot| list.slot(k, slot)).collect();
-                if memory.iter().enumerate().any(|(slot, &value)| value != C::vacant(slot)) {
+                let memory: Vec<f64> = (0..C::SLOTS).map(|slot| list.slot(k, slot).into()).collect();
+                if memory
+                    .iter()
+                    .enumerate()
+                    .any(|(slot, &value)| S::Real::of(value) != S::Real::of(C::vacant(slot)))
+                {
                     let (a, b) = list.pair(k);
                     into.push(Carried { a, b: wall.unwrap_or(b), memory });
                 }
@@ -50,10 +55,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     pub(super) fn place(&mut self, mut pairs: Vec<Carried>, mut walls: Vec<Carried>) {
         pairs.sort_unstable_by_key(|contact| (contact.a, contact.b));
         walls.sort_unstable_by_key(|contact| (contact.b, contact.a));
-        let write = |list: &mut ContactList, a: u32, b: u32, memory: &[f64]| {
+        let write = |list: &mut ContactList<S::Real>, a: u32, b: u32, memory: &[f64]| {
             list.push(a, b, None, C::vacant);
             for (slot, &value) in memory.iter().enumerate() {
-                *list.slot_mut(list.count - 1, slot) = value;
+                *list.slot_mut(list.count - 1, slot) = S::Real::of(value);
             }
         };
         for chunk in &mut self.chunks {
@@ -117,12 +122,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
 }
 
 /// Centre of a body [d].
-pub(super) fn point(body: &Body) -> [f64; 3] {
+pub(super) fn point<T: Number>(body: &Body<T>) -> [f64; 3] {
     [body.position[0], body.position[1], body.position[2]]
 }
 
 /// Speed of a body [d/τ].
-pub(super) fn speed<S: Space>(body: &Body) -> f64 {
+pub(super) fn speed<S: Space>(body: &Body<S::Real>) -> f64 {
     let (v, _) = S::motion(body);
     (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
 }

@@ -2,6 +2,7 @@
 //! Verlet scheme with velocities kept at half steps; one fused pass that also clears the forces.
 
 use super::kernel::Path;
+use crate::lane::Real;
 use crate::state::{Body, Force, Grains};
 
 /// Rates of drag by slot.
@@ -20,10 +21,10 @@ pub enum DragRates<'a> {
 ///
 /// # Safety
 /// `path` was chosen by [`Path::choose`] on this machine.
-pub unsafe fn advance<G: Grains, const SPIN: bool>(
+pub unsafe fn advance<T: Real, G: Grains, const SPIN: bool>(
     path: Path,
-    bodies: &mut [Body],
-    forces: &mut [Force],
+    bodies: &mut [Body<T>],
+    forces: &mut [Force<T>],
     first: usize,
     grains: &G,
     drag: DragRates<'_>,
@@ -32,74 +33,81 @@ pub unsafe fn advance<G: Grains, const SPIN: bool>(
     // SAFETY: the path was detected.
     unsafe {
         match path {
-            Path::Plain => plain::<G, SPIN>(bodies, forces, first, grains, drag, dt),
+            Path::Plain => plain::<T, G, SPIN>(bodies, forces, first, grains, drag, dt),
             #[cfg(target_arch = "x86_64")]
-            Path::PlainFma => plain_fma::<G, SPIN>(bodies, forces, first, grains, drag, dt),
+            Path::PlainFma => plain_fma::<T, G, SPIN>(bodies, forces, first, grains, drag, dt),
             #[cfg(target_arch = "x86_64")]
-            Path::Avx2 => avx2::<G, SPIN>(bodies, forces, first, grains, drag, dt),
+            Path::Avx2 => avx2::<T, G, SPIN>(bodies, forces, first, grains, drag, dt),
         }
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "fma")]
-fn plain_fma<G: Grains, const SPIN: bool>(
-    bodies: &mut [Body],
-    forces: &mut [Force],
+fn plain_fma<T: Real, G: Grains, const SPIN: bool>(
+    bodies: &mut [Body<T>],
+    forces: &mut [Force<T>],
     first: usize,
     grains: &G,
     drag: DragRates<'_>,
     dt: f64,
 ) -> f64 {
-    plain::<G, SPIN>(bodies, forces, first, grains, drag, dt)
+    plain::<T, G, SPIN>(bodies, forces, first, grains, drag, dt)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn avx2<G: Grains, const SPIN: bool>(
-    bodies: &mut [Body],
-    forces: &mut [Force],
+fn avx2<T: Real, G: Grains, const SPIN: bool>(
+    bodies: &mut [Body<T>],
+    forces: &mut [Force<T>],
     first: usize,
     grains: &G,
     drag: DragRates<'_>,
     dt: f64,
 ) -> f64 {
-    plain::<G, SPIN>(bodies, forces, first, grains, drag, dt)
+    plain::<T, G, SPIN>(bodies, forces, first, grains, drag, dt)
 }
 
 #[inline(always)]
-fn plain<G: Grains, const SPIN: bool>(
-    bodies: &mut [Body],
-    forces: &mut [Force],
+fn plain<T: Real, G: Grains, const SPIN: bool>(
+    bodies: &mut [Body<T>],
+    forces: &mut [Force<T>],
     first: usize,
     grains: &G,
     drag: DragRates<'_>,
     dt: f64,
 ) -> f64 {
     match drag {
-        DragRates::None => free::<G, SPIN>(bodies, forces, first, grains, dt),
-        DragRates::All(rate) => dragged::<G, SPIN>(bodies, forces, first, grains, dt, |_| rate),
-        DragRates::Each(rates) => dragged::<G, SPIN>(bodies, forces, first, grains, dt, |slot| rates[slot]),
+        DragRates::None => free::<T, G, SPIN>(bodies, forces, first, grains, dt),
+        DragRates::All(rate) => dragged::<T, G, SPIN>(bodies, forces, first, grains, dt, |_| rate),
+        DragRates::Each(rates) => {
+            dragged::<T, G, SPIN>(bodies, forces, first, grains, dt, |slot| rates[slot])
+        }
     }
 }
 
 #[inline(always)]
-fn free<G: Grains, const SPIN: bool>(
-    bodies: &mut [Body],
-    forces: &mut [Force],
+fn free<T: Real, G: Grains, const SPIN: bool>(
+    bodies: &mut [Body<T>],
+    forces: &mut [Force<T>],
     first: usize,
     grains: &G,
     dt: f64,
 ) -> f64 {
     let mut rush = [0.0_f64; 4];
     for (k, (body, force)) in bodies.iter_mut().zip(forces).enumerate() {
-        let per_mass = dt * grains.inverse_mass(first + k);
-        let per_inertia = dt * grains.inverse_inertia(first + k);
+        let per_mass = T::of(dt * grains.inverse_mass(first + k));
+        let per_inertia = T::of(dt * grains.inverse_inertia(first + k));
         let inverse_budget = body.position[3];
+        // One row after the other, each in one register.
+        let velocity: [T; 4] = std::array::from_fn(|c| force.force[c].mul_add(per_mass, body.velocity[c]));
+        body.velocity = velocity;
+        let velocity = velocity.map(T::into);
         for c in 0..4 {
-            body.velocity[c] = force.force[c].mul_add(per_mass, body.velocity[c]);
-            body.position[c] = body.velocity[c].mul_add(dt, body.position[c]);
-            let hurry = body.velocity[c].abs() * inverse_budget;
+            body.position[c] = velocity[c].mul_add(dt, body.position[c]);
+        }
+        for c in 0..4 {
+            let hurry = velocity[c].abs() * inverse_budget;
             rush[c] = if hurry > rush[c] { hurry } else { rush[c] };
         }
         if SPIN {
@@ -107,7 +115,11 @@ fn free<G: Grains, const SPIN: bool>(
                 body.spin[c] = force.torque[c].mul_add(per_inertia, body.spin[c]);
             }
         }
-        *force = Force::default();
+        // Row by row: put together first, it would be stored in pieces and read whole.
+        force.force = [T::default(); 4];
+        if SPIN {
+            force.torque = [T::default(); 4];
+        }
     }
     rush[0].max(rush[1]).max(rush[2])
 }
@@ -125,10 +137,10 @@ pub struct Deformation {
 ///
 /// # Safety
 /// `path` was chosen by [`Path::choose`] on this machine.
-pub unsafe fn advance_with_space<G: Grains, const SPIN: bool>(
+pub unsafe fn advance_with_space<T: Real, G: Grains, const SPIN: bool>(
     path: Path,
-    bodies: &mut [Body],
-    forces: &mut [Force],
+    bodies: &mut [Body<T>],
+    forces: &mut [Force<T>],
     first: usize,
     grains: &G,
     deformation: Deformation,
@@ -137,52 +149,52 @@ pub unsafe fn advance_with_space<G: Grains, const SPIN: bool>(
     // SAFETY: the path was detected.
     unsafe {
         match path {
-            Path::Plain => with_space::<G, SPIN>(bodies, forces, first, grains, deformation, dt),
+            Path::Plain => with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt),
             #[cfg(target_arch = "x86_64")]
-            Path::PlainFma => with_space_fma::<G, SPIN>(bodies, forces, first, grains, deformation, dt),
+            Path::PlainFma => with_space_fma::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt),
             #[cfg(target_arch = "x86_64")]
-            Path::Avx2 => with_space_avx2::<G, SPIN>(bodies, forces, first, grains, deformation, dt),
+            Path::Avx2 => with_space_avx2::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt),
         }
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "fma")]
-fn with_space_fma<G: Grains, const SPIN: bool>(
-    bodies: &mut [Body],
-    forces: &mut [Force],
+fn with_space_fma<T: Real, G: Grains, const SPIN: bool>(
+    bodies: &mut [Body<T>],
+    forces: &mut [Force<T>],
     first: usize,
     grains: &G,
     deformation: Deformation,
     dt: f64,
 ) -> f64 {
-    with_space::<G, SPIN>(bodies, forces, first, grains, deformation, dt)
+    with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn with_space_avx2<G: Grains, const SPIN: bool>(
-    bodies: &mut [Body],
-    forces: &mut [Force],
+fn with_space_avx2<T: Real, G: Grains, const SPIN: bool>(
+    bodies: &mut [Body<T>],
+    forces: &mut [Force<T>],
     first: usize,
     grains: &G,
     deformation: Deformation,
     dt: f64,
 ) -> f64 {
-    with_space::<G, SPIN>(bodies, forces, first, grains, deformation, dt)
+    with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt)
 }
 
 #[inline(always)]
-fn with_space<G: Grains, const SPIN: bool>(
-    bodies: &mut [Body],
-    forces: &mut [Force],
+fn with_space<T: Real, G: Grains, const SPIN: bool>(
+    bodies: &mut [Body<T>],
+    forces: &mut [Force<T>],
     first: usize,
     grains: &G,
     deformation: Deformation,
     dt: f64,
 ) -> f64 {
     if deformation.local_damping == 0.0 {
-        follow::<G, SPIN>(bodies, forces, first, grains, deformation.rate, dt, |force, _| force)
+        follow::<T, G, SPIN>(bodies, forces, first, grains, deformation.rate, dt, |force, _| force)
     } else {
         let strength = deformation.local_damping;
         let damped = |force: f64, velocity: f64| {
@@ -191,14 +203,14 @@ fn with_space<G: Grains, const SPIN: bool>(
             let opposes = if power == 0.0 { 0.0 } else { opposes };
             force.mul_add(opposes, force)
         };
-        follow::<G, SPIN>(bodies, forces, first, grains, deformation.rate, dt, damped)
+        follow::<T, G, SPIN>(bodies, forces, first, grains, deformation.rate, dt, damped)
     }
 }
 
 #[inline(always)]
-fn follow<G: Grains, const SPIN: bool>(
-    bodies: &mut [Body],
-    forces: &mut [Force],
+fn follow<T: Real, G: Grains, const SPIN: bool>(
+    bodies: &mut [Body<T>],
+    forces: &mut [Force<T>],
     first: usize,
     grains: &G,
     rate: [f64; 3],
@@ -214,22 +226,24 @@ fn follow<G: Grains, const SPIN: bool>(
         let gain = [per_mass, per_mass, per_inertia, 0.0];
         let inverse_budget = body.position[3];
         for c in 0..4 {
-            body.velocity[c] = damped(force.force[c], body.velocity[c]).mul_add(gain[c], body.velocity[c]);
-            let carried = body.position[c].mul_add(rate[c], body.velocity[c]);
+            let velocity: f64 = body.velocity[c].into();
+            body.velocity[c] = T::of(damped(force.force[c].into(), velocity).mul_add(gain[c], velocity));
+            let velocity: f64 = body.velocity[c].into();
+            let carried = body.position[c].mul_add(rate[c], velocity);
             body.position[c] = carried.mul_add(step[c], body.position[c]);
-            let hurry = body.velocity[c].abs() * inverse_budget;
+            let hurry = velocity.abs() * inverse_budget;
             rush[c] = if hurry > rush[c] { hurry } else { rush[c] };
         }
-        force.force = [0.0; 4];
+        force.force = [T::default(); 4];
     }
     rush[0].max(rush[1])
 }
 
 /// v(t+dt/2) = [v(t−dt/2)(1 − γ dt/2) + dt a]/(1 + γ dt/2): drag centred at t, second order.
 #[inline(always)]
-fn dragged<G: Grains, const SPIN: bool>(
-    bodies: &mut [Body],
-    forces: &mut [Force],
+fn dragged<T: Real, G: Grains, const SPIN: bool>(
+    bodies: &mut [Body<T>],
+    forces: &mut [Force<T>],
     first: usize,
     grains: &G,
     dt: f64,
@@ -239,19 +253,24 @@ fn dragged<G: Grains, const SPIN: bool>(
     for (k, (body, force)) in bodies.iter_mut().zip(forces).enumerate() {
         let half = 0.5 * dt * rate(first + k);
         let (keep, share) = ((1.0 - half) / (1.0 + half), dt / (1.0 + half));
-        let per_mass = share * grains.inverse_mass(first + k);
-        let per_inertia = share * grains.inverse_inertia(first + k);
+        let keep = T::of(keep);
+        let per_mass = T::of(share * grains.inverse_mass(first + k));
+        let per_inertia = T::of(share * grains.inverse_inertia(first + k));
         let inverse_budget = body.position[3];
         for c in 0..3 {
-            body.velocity[c] = force.force[c].mul_add(per_mass, keep * body.velocity[c]);
-            body.position[c] = body.velocity[c].mul_add(dt, body.position[c]);
-            let hurry = body.velocity[c].abs() * inverse_budget;
+            body.velocity[c] = force.force[c].mul_add(per_mass, keep.mul(body.velocity[c]));
+            let velocity: f64 = body.velocity[c].into();
+            body.position[c] = velocity.mul_add(dt, body.position[c]);
+            let hurry = velocity.abs() * inverse_budget;
             rush = if hurry > rush { hurry } else { rush };
             if SPIN {
-                body.spin[c] = force.torque[c].mul_add(per_inertia, keep * body.spin[c]);
+                body.spin[c] = force.torque[c].mul_add(per_inertia, keep.mul(body.spin[c]));
             }
         }
-        *force = Force::default();
+        force.force = [T::default(); 4];
+        if SPIN {
+            force.torque = [T::default(); 4];
+        }
     }
     rush
 }

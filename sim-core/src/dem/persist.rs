@@ -11,6 +11,7 @@ use crate::SimError;
 use crate::boundary::Boundary;
 use crate::contact::ContactLaw;
 use crate::control::ServoWalls;
+use crate::lane::Number;
 use crate::space::Space;
 use crate::state::Grains;
 
@@ -141,6 +142,6 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
 
     /// Name of the compiled laws.
     pub(super) fn law_name() -> String {
-        format!("dem{}d+{}", S::DIMENSION, C::name())
+        format!("dem{}d+{}{}", S::DIMENSION, <S::Real as Number>::NAME, C::name())
     }
 }

@@ -4,10 +4,10 @@ use super::engine::Dem;
 use super::lists::point;
 use super::{Energies, PairContact, View, WallContact, WallView};
 use crate::boundary::Boundary;
-use crate::contact::ContactLaw;
+use crate::contact::{ContactLaw, Response};
 use crate::control::ServoWalls;
 use crate::dem::kernel::{Evaluated, constants_of};
-use crate::lane::GROUP;
+use crate::lane::{Number, WIDEST};
 use crate::space::{Space, Vector};
 use crate::state::{Body, ContactList, Force, Grains};
 
@@ -16,7 +16,7 @@ pub(super) const MOST_SLOTS: usize = 8;
 
 /// Forces at t_n, by slot.
 pub(super) struct Probe {
-    pub forces: Vec<Force>,
+    pub forces: Vec<Force<f64>>,
     pub wall_force: [f64; 6],
     pub pairs: Vec<PairContact>,
     pub walls: Vec<WallContact>,
@@ -32,11 +32,11 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             walls: Vec::new(),
         };
         let pass = self.pass(std::ptr::null_mut());
-        let mut memory = [0.0; MOST_SLOTS * GROUP];
+        let mut memory = [S::Real::default(); MOST_SLOTS * WIDEST];
         assert!(C::SLOTS <= MOST_SLOTS, "a law remembers at most {MOST_SLOTS} numbers");
-        let mut recall = |list: &ContactList, k: usize| {
+        let mut recall = |list: &ContactList<S::Real>, k: usize| {
             for slot in 0..C::SLOTS {
-                memory[slot * GROUP] = list.slot(k, slot);
+                memory[slot * <S::Real as Number>::GROUP] = list.slot(k, slot);
             }
             memory.as_mut_ptr()
         };
@@ -44,21 +44,23 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             for list in [&chunk.inner, &chunk.outer] {
                 for k in 0..list.count {
                     let (a, b) = list.pair(k);
-                    let constants = constants_of(&self.grains, a, b);
+                    let constants = constants_of::<G, S::Real>(&self.grains, a, b);
                     // SAFETY: the list holds valid slots, the copy of the memory has room for one lane.
                     let contact = unsafe {
-                        pass.pair::<f64>(&raw const a, &raw const b, recall(list, k), constants.as_ptr())
+                        pass.pair::<S::Real>(&raw const a, &raw const b, recall(list, k), constants.as_ptr())
                     };
-                    let (force, torque_a) = (record::<S>(&contact), S::spin_record(contact.torque_a));
-                    let torque_b = S::spin_record(contact.torque_b);
+                    let (force, torque_a) =
+                        (record::<S>(&contact), doubles::<S>(S::spin_record(contact.torque_a)));
+                    let torque_b = doubles::<S>(S::spin_record(contact.torque_b));
                     for axis in 0..3 {
                         probe.forces[a as usize].force[axis] += force[axis];
                         probe.forces[b as usize].force[axis] -= force[axis];
                         probe.forces[a as usize].torque[axis] += torque_a[axis];
                         probe.forces[b as usize].torque[axis] += torque_b[axis];
                     }
-                    let distant = self.law.range() > 0.0 && contact.response.attraction > 0.0;
-                    if contact.overlap > 0.0 || distant {
+                    let attraction: f64 = contact.response.attraction.into();
+                    let distant = self.law.range() > 0.0 && attraction > 0.0;
+                    if contact.overlap.into() > 0.0 || distant {
                         probe.pairs.push(self.describe(a, b, &contact));
                     }
                 }
@@ -68,27 +70,26 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                 for k in 0..list.count {
                     let (a, _) = list.pair(k);
                     // SAFETY: as above.
-                    let contact = unsafe { pass.wall::<f64>(walls, wall, &raw const a, recall(list, k)) };
-                    let (force, torque) = (record::<S>(&contact), S::spin_record(contact.torque_a));
+                    let contact = unsafe { pass.wall::<S::Real>(walls, wall, &raw const a, recall(list, k)) };
+                    let (force, torque) =
+                        (record::<S>(&contact), doubles::<S>(S::spin_record(contact.torque_a)));
                     for axis in 0..3 {
                         probe.forces[a as usize].force[axis] += force[axis];
                         probe.forces[a as usize].torque[axis] += torque[axis];
                     }
-                    probe.wall_force[wall] += contact.response.normal;
-                    if contact.overlap > 0.0 {
+                    probe.wall_force[wall] += contact.response.normal.into();
+                    if contact.overlap.into() > 0.0 {
                         let response = &contact.response;
+                        let [elastic, attraction, viscous] = parts::<S>(response);
                         probe.walls.push(WallContact {
                             particle: self.original[a as usize] as usize,
                             wall,
-                            overlap: contact.overlap,
-                            elastic: response.elastic,
-                            normal_force: response.elastic - response.attraction,
-                            viscous: response.viscous,
-                            tangential: S::vector_record(S::shear_vector(
-                                contact.normal,
-                                response.tangential,
-                            )),
-                            sliding: sliding::<S>(response, self.wall_law.bound(response.elastic)),
+                            overlap: contact.overlap.into(),
+                            elastic,
+                            normal_force: elastic - attraction,
+                            viscous,
+                            tangential: shear::<S>(&contact),
+                            sliding: sliding::<S>(response, self.wall_law.bound(elastic)),
                         });
                     }
                 }
@@ -98,11 +99,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     }
 
     /// One pair in original numbering, lower number first.
-    fn describe(&self, a: u32, b: u32, contact: &Evaluated<S, f64>) -> PairContact {
+    fn describe(&self, a: u32, b: u32, contact: &Evaluated<S, S::Real>) -> PairContact {
         let (mut i, mut j) = (self.original[a as usize] as usize, self.original[b as usize] as usize);
-        let mut normal = S::vector_record(contact.normal);
+        let mut normal = doubles::<S>(S::vector_record(contact.normal));
         let response = &contact.response;
-        let mut tangential = S::vector_record(S::shear_vector(contact.normal, response.tangential));
+        let [elastic, attraction, viscous] = parts::<S>(response);
+        let mut tangential = shear::<S>(contact);
         if i > j {
             (i, j) = (j, i);
             normal = normal.map(|x| -x);
@@ -112,17 +114,17 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             i,
             j,
             normal,
-            overlap: contact.overlap,
-            elastic: response.elastic,
-            normal_force: response.elastic - response.attraction,
-            viscous: response.viscous,
+            overlap: contact.overlap.into(),
+            elastic,
+            normal_force: elastic - attraction,
+            viscous,
             tangential,
-            sliding: sliding::<S>(response, self.law.bound(response.elastic)),
+            sliding: sliding::<S>(response, self.law.bound(elastic)),
         }
     }
 
     /// Velocity and spin at t_n, from those at t_n − dt/2 and the forces of t_n.
-    fn synchronous(&self, slot: usize, body: &Body, force: &Force) -> ([f64; 3], [f64; 3]) {
+    fn synchronous(&self, slot: usize, body: &Body<S::Real>, force: &Force<f64>) -> ([f64; 3], [f64; 3]) {
         let half = 0.5 * self.dt;
         let drag = match self.drag_rates() {
             super::motion::DragRates::None => 0.0,
@@ -216,12 +218,26 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
 }
 
 /// Force on a as three components.
-fn record<S: Space>(contact: &Evaluated<S, f64>) -> [f64; 3] {
-    S::vector_record(contact.force)
+fn record<S: Space>(contact: &Evaluated<S, S::Real>) -> [f64; 3] {
+    doubles::<S>(S::vector_record(contact.force))
+}
+
+/// Tangential force on a as three components.
+fn shear<S: Space>(contact: &Evaluated<S, S::Real>) -> [f64; 3] {
+    doubles::<S>(S::vector_record(S::shear_vector(contact.normal, contact.response.tangential)))
+}
+
+/// Elastic repulsion, attraction, viscous force.
+fn parts<S: Space>(response: &Response<S, S::Real>) -> [f64; 3] {
+    doubles::<S>([response.elastic, response.attraction, response.viscous])
+}
+
+fn doubles<S: Space>(record: [S::Real; 3]) -> [f64; 3] {
+    record.map(Into::into)
 }
 
 /// Whether the tangential force is at its bound (to round-off).
-fn sliding<S: Space>(response: &crate::contact::Response<S, f64>, bound: f64) -> bool {
-    let square = response.tangential.dot(response.tangential);
-    square > 0.0 && square.sqrt() >= bound * (1.0 - 1e-12)
+fn sliding<S: Space>(response: &Response<S, S::Real>, bound: f64) -> bool {
+    let square: f64 = response.tangential.dot(response.tangential).into();
+    square > 0.0 && square.sqrt() >= bound * (1.0 - S::Real::AT_BOUND)
 }

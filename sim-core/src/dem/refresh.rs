@@ -7,6 +7,7 @@ use super::threads::{Crew, Shared};
 use crate::boundary::Boundary;
 use crate::contact::ContactLaw;
 use crate::control::ServoWalls;
+use crate::lane::Number;
 use crate::neighbour::near_pairs;
 use crate::space::Space;
 use crate::state::{Body, Chunk, Grains};
@@ -177,7 +178,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     ///
     /// # Safety
     /// The caller has this chunk to itself.
-    unsafe fn parts<'a>(dem: *mut Self, chunk: usize) -> (&'a mut [Body], &'a mut [f64], &'a mut Chunk) {
+    unsafe fn parts<'a>(
+        dem: *mut Self,
+        chunk: usize,
+    ) -> (&'a mut [Body<S::Real>], &'a mut [f64], &'a mut Chunk<S::Real>) {
         // SAFETY: the caller vouches; chunks do not overlap.
         unsafe {
             let shared = &*dem;
@@ -234,8 +238,8 @@ fn budget_of(speed: f64, horizon: f64) -> f64 {
 
 /// Lists the pairs of a chunk that may touch, keeping the memory of those that were listed.
 fn list_pairs<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>>(
-    chunk: &mut Chunk,
-    bodies: &[Body],
+    chunk: &mut Chunk<S::Real>,
+    bodies: &[Body<S::Real>],
     budget: &[f64],
     grains: &G,
     boundary: &B,
@@ -265,7 +269,7 @@ fn list_pairs<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>>(
     }
     let other_ghosts = outer.count != chunk.outer.count
         || outer.indices != chunk.outer.indices
-        || chunk.ghosts.targets.len() != outer.indices.len();
+        || chunk.ghosts.targets.len() != outer.count;
     std::mem::swap(&mut chunk.inner, inner);
     std::mem::swap(&mut chunk.outer, outer);
     if other_ghosts {
@@ -275,8 +279,8 @@ fn list_pairs<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>>(
 
 /// Chooses the near pairs of a chunk whose gap may close while the budgets last, in order.
 fn select<S: Space, G: Grains, B: Boundary<S>>(
-    chunk: &mut Chunk,
-    bodies: &[Body],
+    chunk: &mut Chunk<S::Real>,
+    bodies: &[Body<S::Real>],
     budget: &[f64],
     grains: &G,
     boundary: &B,
@@ -302,7 +306,7 @@ fn select<S: Space, G: Grains, B: Boundary<S>>(
 }
 
 /// Lists the ghosts of a chunk: the particles b of its outer contacts.
-fn list_ghosts(chunk: &mut Chunk) {
+fn list_ghosts<T: Number>(chunk: &mut Chunk<T>) {
     let ghosts = &mut chunk.ghosts;
     ghosts.changed = true;
     ghosts.particles.clear();
@@ -313,19 +317,16 @@ fn list_ghosts(chunk: &mut Chunk) {
     ghosts.forces.resize(ghosts.particles.len(), crate::state::Force::default());
     ghosts.targets.clear();
     for k in 0..chunk.outer.count {
-        if k % 4 == 0 {
-            ghosts.targets.push([0; 4]);
-        }
         let (_, b) = chunk.outer.pair(k);
         let place = ghosts.particles.binary_search(&b).expect("every b of an outer contact is a ghost");
-        ghosts.targets[k / 4][k % 4] = place as u32;
+        ghosts.targets.push(place as u32);
     }
 }
 
 /// Lists the particles of a chunk that may touch a wall, keeping the memory of those that were listed.
 fn list_walls<S: Space, G: Grains, C: ContactLaw<S>>(
-    chunk: &mut Chunk,
-    bodies: &[Body],
+    chunk: &mut Chunk<S::Real>,
+    bodies: &[Body<S::Real>],
     budget: &[f64],
     grains: &G,
     walls: &ServoWalls,

@@ -13,6 +13,7 @@ use crate::contact::rolling::NoRolling;
 use crate::contact::tangential::{CoulombSpring, Frictionless, Tangential};
 use crate::contact::{ContactLaw, Law};
 use crate::control::ServoWalls;
+use crate::lane::Real;
 use crate::space::Spatial;
 use crate::state::Equal;
 use crate::{Options, SimError};
@@ -44,7 +45,7 @@ pub fn spheres(
     laws: Laws,
     options: &Options,
 ) -> Box<dyn Dynamics> {
-    choose_damping(parameters, Source::Initial { initial, dt }, laws, options)
+    choose_precision(parameters, Source::Initial { initial, dt }, laws, options)
 }
 
 /// Continues a system of spheres from what [`Dynamics::save`] wrote, to the same bits.
@@ -57,7 +58,7 @@ pub fn restore_spheres(
     options: &Options,
 ) -> Result<Box<dyn Dynamics>, SimError> {
     let saved = Persisted::decode(bytes)?;
-    let dem = choose_damping(parameters, Source::Saved(Box::new(saved.clone())), Laws::Needed, options);
+    let dem = choose_precision(parameters, Source::Saved(Box::new(saved.clone())), Laws::Needed, options);
     if dem.kernel().split(';').next() != Some(saved.kernel.as_str()) {
         return Err(SimError::Checkpoint(format!(
             "state of kernel {:?}, these parameters need {:?}",
@@ -68,22 +69,47 @@ pub fn restore_spheres(
     Ok(dem)
 }
 
-fn choose_damping(
+fn choose_precision(
+    parameters: &SphereParameters,
+    source: Source<'_>,
+    laws: Laws,
+    options: &Options,
+) -> Box<dyn Dynamics> {
+    if parameters.mixed {
+        choose_damping::<f32>(parameters, source, laws, options)
+    } else {
+        choose_damping::<f64>(parameters, source, laws, options)
+    }
+}
+
+fn choose_damping<P: Real>(
     parameters: &SphereParameters,
     source: Source<'_>,
     laws: Laws,
     options: &Options,
 ) -> Box<dyn Dynamics> {
     if parameters.alpha_n == 0.0 && laws == Laws::Needed {
-        choose_attraction(parameters, source, laws, options, NoDamping)
+        choose_attraction::<P, _>(parameters, source, laws, options, NoDamping)
     } else if parameters.clamp_viscous {
-        choose_attraction(parameters, source, laws, options, Viscous::<true>::new(parameters.alpha_n, KN))
+        choose_attraction::<P, _>(
+            parameters,
+            source,
+            laws,
+            options,
+            Viscous::<true>::new(parameters.alpha_n, KN),
+        )
     } else {
-        choose_attraction(parameters, source, laws, options, Viscous::<false>::new(parameters.alpha_n, KN))
+        choose_attraction::<P, _>(
+            parameters,
+            source,
+            laws,
+            options,
+            Viscous::<false>::new(parameters.alpha_n, KN),
+        )
     }
 }
 
-fn choose_attraction<D: Damping>(
+fn choose_attraction<P: Real, D: Damping>(
     parameters: &SphereParameters,
     source: Source<'_>,
     laws: Laws,
@@ -93,13 +119,13 @@ fn choose_attraction<D: Damping>(
     let adhesive = parameters.adhesion != 0.0 || parameters.wall_adhesion != 0.0;
     if adhesive || laws == Laws::All {
         let attractions = [Constant { fc: parameters.adhesion }, Constant { fc: parameters.wall_adhesion }];
-        choose_friction(parameters, source, laws, options, damping, attractions)
+        choose_friction::<P, _, _>(parameters, source, laws, options, damping, attractions)
     } else {
-        choose_friction(parameters, source, laws, options, damping, [NoAttraction; 2])
+        choose_friction::<P, _, _>(parameters, source, laws, options, damping, [NoAttraction; 2])
     }
 }
 
-fn choose_friction<D: Damping, A: Attraction>(
+fn choose_friction<P: Real, D: Damping, A: Attraction>(
     parameters: &SphereParameters,
     source: Source<'_>,
     laws: Laws,
@@ -113,13 +139,13 @@ fn choose_friction<D: Damping, A: Attraction>(
             CoulombSpring { kt: parameters.kt, mu: parameters.mu },
             CoulombSpring { kt: parameters.kt, mu: parameters.mu_wall },
         ];
-        build(parameters, source, options, damping, attractions, friction)
+        build::<P, _, _, _>(parameters, source, options, damping, attractions, friction)
     } else {
-        build(parameters, source, options, damping, attractions, [Frictionless; 2])
+        build::<P, _, _, _>(parameters, source, options, damping, attractions, [Frictionless; 2])
     }
 }
 
-fn build<D: Damping, A: Attraction, T: Tangential<Spatial>>(
+fn build<P: Real, D: Damping, A: Attraction, T: Tangential<Spatial<P>>>(
     parameters: &SphereParameters,
     source: Source<'_>,
     options: &Options,
@@ -128,7 +154,7 @@ fn build<D: Damping, A: Attraction, T: Tangential<Spatial>>(
     [tangential, wall_tangential]: [T; 2],
 ) -> Box<dyn Dynamics>
 where
-    Law<Hooke, D, A, T, NoRolling>: ContactLaw<Spatial>,
+    Law<Hooke, D, A, T, NoRolling>: ContactLaw<Spatial<P>>,
 {
     let normal = Hooke { kn: KN };
     let law = Law { normal, damping, attraction, tangential, rolling: NoRolling };
@@ -148,7 +174,7 @@ where
                 pressure: parameters.pressure,
                 moving: parameters.moving,
             };
-            Box::new(Dem::<Spatial, _, _, _>::new(
+            Box::new(Dem::<Spatial<P>, _, _, _>::new(
                 law,
                 wall_law,
                 grains,
@@ -160,7 +186,7 @@ where
                 threads,
             ))
         }
-        Source::Saved(saved) => Box::new(Dem::<Spatial, _, _, _>::from_persisted(
+        Source::Saved(saved) => Box::new(Dem::<Spatial<P>, _, _, _>::from_persisted(
             law, wall_law, grains, Open, *saved, path, threads,
         )),
     }

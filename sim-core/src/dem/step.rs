@@ -7,6 +7,7 @@ use super::motion::{Deformation, advance, advance_with_space};
 use super::threads::{Crew, Shared};
 use crate::boundary::Boundary;
 use crate::contact::ContactLaw;
+use crate::lane::Lane;
 use crate::space::Space;
 use crate::state::Grains;
 
@@ -105,7 +106,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         unsafe {
             let shared = &*dem;
             let forces = shared.forces.as_ptr().cast_mut();
-            let own = (&raw mut (*dem).chunks).cast::<Vec<crate::state::Chunk>>();
+            let own = (&raw mut (*dem).chunks).cast::<Vec<crate::state::Chunk<S::Real>>>();
             let own = (*own).as_mut_ptr().add(chunk);
             shared.pass(forces).run(shared.path, &mut *own);
         }
@@ -127,8 +128,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                 let ghost = &shared.chunks[from as usize].ghosts.forces[place as usize];
                 let force = &mut *forces.add(particle as usize);
                 for k in 0..3 {
-                    force.force[k] += ghost.force[k];
-                    force.torque[k] += ghost.torque[k];
+                    force.force[k] = force.force[k].add(ghost.force[k]);
+                    force.torque[k] = force.torque[k].add(ghost.torque[k]);
                 }
             }
             let bodies = std::slice::from_raw_parts_mut(bodies.add(start), end - start);
@@ -138,9 +139,17 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                 let rate = shared.boundary.next_rate(shared.virial(), dt);
                 let deformation = Deformation { rate, local_damping: shared.boundary.local_damping() };
                 if C::NEEDS_SPIN {
-                    advance_with_space::<G, true>(shared.path, bodies, forces, start, grains, deformation, dt)
+                    advance_with_space::<S::Real, G, true>(
+                        shared.path,
+                        bodies,
+                        forces,
+                        start,
+                        grains,
+                        deformation,
+                        dt,
+                    )
                 } else {
-                    advance_with_space::<G, false>(
+                    advance_with_space::<S::Real, G, false>(
                         shared.path,
                         bodies,
                         forces,
@@ -151,9 +160,9 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                     )
                 }
             } else if C::NEEDS_SPIN {
-                advance::<G, true>(shared.path, bodies, forces, start, grains, drag, dt)
+                advance::<S::Real, G, true>(shared.path, bodies, forces, start, grains, drag, dt)
             } else {
-                advance::<G, false>(shared.path, bodies, forces, start, grains, drag, dt)
+                advance::<S::Real, G, false>(shared.path, bodies, forces, start, grains, drag, dt)
             };
             let own = shared.chunks.as_ptr().cast_mut().add(chunk);
             (*own).rush = rush;

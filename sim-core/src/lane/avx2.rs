@@ -12,12 +12,12 @@ use std::arch::x86_64::{
     _mm256_unpacklo_pd,
 };
 
-use super::{Lane, MINUS, OPPOSITE, OTHER};
+use super::{Gather, Lane, MINUS, Number, OPPOSITE, OTHER};
 use crate::state::{Body, Force};
 
 /// Four doubles in one register.
 #[derive(Clone, Copy)]
-pub struct Avx2(__m256d);
+pub struct Avx2(pub(super) __m256d);
 
 /// Doubles per body record and per force record.
 const ROW: usize = 4;
@@ -25,8 +25,8 @@ const ROW: usize = 4;
 impl Avx2 {
     /// Address of a record of a body.
     #[inline(always)]
-    unsafe fn row<const FIELD: usize>(bodies: *const Body, index: u32) -> *const f64 {
-        // SAFETY: a body is three rows of four doubles; the caller vouches for the index.
+    unsafe fn row<T: Number, const FIELD: usize>(bodies: *const Body<T>, index: u32) -> *const f64 {
+        // SAFETY: a body of doubles is three rows of four, of others the first one is; the caller vouches for the index.
         unsafe { bodies.add(index as usize).cast::<f64>().add(FIELD * ROW) }
     }
 
@@ -65,9 +65,96 @@ impl Avx2 {
             ]
         }
     }
+
+    /// Difference of one record of two bodies, b − a.
+    ///
+    /// # Safety
+    /// The indices are below the number of bodies; `FIELD` is 0 (position) or, of doubles, 1 (velocity) or
+    /// 2 (spin).
+    #[inline(always)]
+    pub(super) unsafe fn rows_less<T: Number, const FIELD: usize>(
+        bodies: *const Body<T>,
+        a: *const u32,
+        b: *const u32,
+    ) -> [Self; 3] {
+        // SAFETY: the caller vouches for the indices; records are 32-byte aligned.
+        unsafe {
+            let r0 = _mm256_sub_pd(
+                _mm256_load_pd(Self::row::<T, FIELD>(bodies, *b.add(0))),
+                _mm256_load_pd(Self::row::<T, FIELD>(bodies, *a.add(0))),
+            );
+            let r1 = _mm256_sub_pd(
+                _mm256_load_pd(Self::row::<T, FIELD>(bodies, *b.add(1))),
+                _mm256_load_pd(Self::row::<T, FIELD>(bodies, *a.add(1))),
+            );
+            let r2 = _mm256_sub_pd(
+                _mm256_load_pd(Self::row::<T, FIELD>(bodies, *b.add(2))),
+                _mm256_load_pd(Self::row::<T, FIELD>(bodies, *a.add(2))),
+            );
+            let r3 = _mm256_sub_pd(
+                _mm256_load_pd(Self::row::<T, FIELD>(bodies, *b.add(3))),
+                _mm256_load_pd(Self::row::<T, FIELD>(bodies, *a.add(3))),
+            );
+            Self::columns(r0, r1, r2, r3)
+        }
+    }
+
+    /// Sum of one record of two bodies.
+    ///
+    /// # Safety
+    /// The indices are below the number of bodies; `FIELD` is 0 (position) or, of doubles, 1 (velocity) or
+    /// 2 (spin).
+    #[inline(always)]
+    pub(super) unsafe fn rows_sum<T: Number, const FIELD: usize>(
+        bodies: *const Body<T>,
+        a: *const u32,
+        b: *const u32,
+    ) -> [Self; 3] {
+        // SAFETY: the caller vouches for the indices; records are 32-byte aligned.
+        unsafe {
+            let r0 = _mm256_add_pd(
+                _mm256_load_pd(Self::row::<T, FIELD>(bodies, *a.add(0))),
+                _mm256_load_pd(Self::row::<T, FIELD>(bodies, *b.add(0))),
+            );
+            let r1 = _mm256_add_pd(
+                _mm256_load_pd(Self::row::<T, FIELD>(bodies, *a.add(1))),
+                _mm256_load_pd(Self::row::<T, FIELD>(bodies, *b.add(1))),
+            );
+            let r2 = _mm256_add_pd(
+                _mm256_load_pd(Self::row::<T, FIELD>(bodies, *a.add(2))),
+                _mm256_load_pd(Self::row::<T, FIELD>(bodies, *b.add(2))),
+            );
+            let r3 = _mm256_add_pd(
+                _mm256_load_pd(Self::row::<T, FIELD>(bodies, *a.add(3))),
+                _mm256_load_pd(Self::row::<T, FIELD>(bodies, *b.add(3))),
+            );
+            Self::columns(r0, r1, r2, r3)
+        }
+    }
+
+    /// One record of one body.
+    ///
+    /// # Safety
+    /// The indices are below the number of bodies; `FIELD` is 0 (position) or, of doubles, 1 (velocity) or
+    /// 2 (spin).
+    #[inline(always)]
+    pub(super) unsafe fn row_of<T: Number, const FIELD: usize>(
+        bodies: *const Body<T>,
+        a: *const u32,
+    ) -> [Self; 3] {
+        // SAFETY: the caller vouches for the indices; records are 32-byte aligned.
+        unsafe {
+            let r0 = _mm256_load_pd(Self::row::<T, FIELD>(bodies, *a.add(0)));
+            let r1 = _mm256_load_pd(Self::row::<T, FIELD>(bodies, *a.add(1)));
+            let r2 = _mm256_load_pd(Self::row::<T, FIELD>(bodies, *a.add(2)));
+            let r3 = _mm256_load_pd(Self::row::<T, FIELD>(bodies, *a.add(3)));
+            Self::columns(r0, r1, r2, r3)
+        }
+    }
 }
 
 impl Lane for Avx2 {
+    type Scalar = f64;
     type Mask = Self;
     const WIDTH: usize = 4;
 
@@ -162,6 +249,24 @@ impl Lane for Avx2 {
         // SAFETY: the caller vouches for four writable numbers.
         unsafe { _mm256_storeu_pd(to, self.0) }
     }
+}
+
+impl Gather for Avx2 {
+    type Wide = Self;
+
+    #[inline(always)]
+    fn narrow(wide: Self) -> Self {
+        wide
+    }
+    #[inline(always)]
+    fn widen(self) -> Self {
+        self
+    }
+    #[inline(always)]
+    fn meet(square: Self, reach: Self) -> [Self; 2] {
+        let (distance, inverse_square) = (square.sqrt(), Self::splat(1.0).div(square));
+        [reach.sub(distance), distance.mul(inverse_square)]
+    }
     #[inline(always)]
     unsafe fn gather(table: *const f64, at: *const u32) -> Self {
         // SAFETY: the caller vouches for the indices.
@@ -172,64 +277,36 @@ impl Lane for Avx2 {
     }
 
     #[inline(always)]
-    unsafe fn difference<const FIELD: usize>(bodies: *const Body, a: *const u32, b: *const u32) -> [Self; 3] {
-        // SAFETY: the caller vouches for the indices; records are 32-byte aligned.
-        unsafe {
-            let r0 = _mm256_sub_pd(
-                _mm256_load_pd(Self::row::<FIELD>(bodies, *b.add(0))),
-                _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(0))),
-            );
-            let r1 = _mm256_sub_pd(
-                _mm256_load_pd(Self::row::<FIELD>(bodies, *b.add(1))),
-                _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(1))),
-            );
-            let r2 = _mm256_sub_pd(
-                _mm256_load_pd(Self::row::<FIELD>(bodies, *b.add(2))),
-                _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(2))),
-            );
-            let r3 = _mm256_sub_pd(
-                _mm256_load_pd(Self::row::<FIELD>(bodies, *b.add(3))),
-                _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(3))),
-            );
-            Self::columns(r0, r1, r2, r3)
-        }
+    unsafe fn separation(bodies: *const Body<f64>, a: *const u32, b: *const u32) -> [Self; 3] {
+        // SAFETY: the caller vouches for the indices.
+        unsafe { Self::rows_less::<f64, 0>(bodies, a, b) }
     }
     #[inline(always)]
-    unsafe fn sum<const FIELD: usize>(bodies: *const Body, a: *const u32, b: *const u32) -> [Self; 3] {
-        // SAFETY: the caller vouches for the indices; records are 32-byte aligned.
-        unsafe {
-            let r0 = _mm256_add_pd(
-                _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(0))),
-                _mm256_load_pd(Self::row::<FIELD>(bodies, *b.add(0))),
-            );
-            let r1 = _mm256_add_pd(
-                _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(1))),
-                _mm256_load_pd(Self::row::<FIELD>(bodies, *b.add(1))),
-            );
-            let r2 = _mm256_add_pd(
-                _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(2))),
-                _mm256_load_pd(Self::row::<FIELD>(bodies, *b.add(2))),
-            );
-            let r3 = _mm256_add_pd(
-                _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(3))),
-                _mm256_load_pd(Self::row::<FIELD>(bodies, *b.add(3))),
-            );
-            Self::columns(r0, r1, r2, r3)
-        }
+    unsafe fn difference<const FIELD: usize>(
+        bodies: *const Body<f64>,
+        a: *const u32,
+        b: *const u32,
+    ) -> [Self; 3] {
+        // SAFETY: the caller vouches for the indices.
+        unsafe { Self::rows_less::<f64, FIELD>(bodies, a, b) }
     }
     #[inline(always)]
-    unsafe fn record<const FIELD: usize>(bodies: *const Body, a: *const u32) -> [Self; 3] {
-        // SAFETY: the caller vouches for the indices; records are 32-byte aligned.
-        unsafe {
-            let r0 = _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(0)));
-            let r1 = _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(1)));
-            let r2 = _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(2)));
-            let r3 = _mm256_load_pd(Self::row::<FIELD>(bodies, *a.add(3)));
-            Self::columns(r0, r1, r2, r3)
-        }
+    unsafe fn motion(bodies: *const Body<f64>, a: *const u32, b: *const u32) -> [[Self; 3]; 2] {
+        // SAFETY: the caller vouches for the indices.
+        unsafe { [Self::rows_less::<f64, 1>(bodies, a, b), Self::rows_sum::<f64, 2>(bodies, a, b)] }
     }
     #[inline(always)]
-    unsafe fn scatter<const FIELD: usize>(forces: *mut Force, at: *const u32, value: [Self; 3]) {
+    unsafe fn position(bodies: *const Body<f64>, a: *const u32) -> [Self; 3] {
+        // SAFETY: the caller vouches for the indices.
+        unsafe { Self::row_of::<f64, 0>(bodies, a) }
+    }
+    #[inline(always)]
+    unsafe fn record<const FIELD: usize>(bodies: *const Body<f64>, a: *const u32) -> [Self; 3] {
+        // SAFETY: the caller vouches for the indices.
+        unsafe { Self::row_of::<f64, FIELD>(bodies, a) }
+    }
+    #[inline(always)]
+    unsafe fn scatter<const FIELD: usize>(forces: *mut Force<f64>, at: *const u32, value: [Self; 3]) {
         let rows = Self::rows(value);
         // SAFETY: the caller vouches for the indices; a force is two aligned rows of four doubles.
         unsafe {
@@ -242,9 +319,9 @@ impl Lane for Avx2 {
     }
     #[inline(always)]
     unsafe fn scatter_pair<const FIELD: usize, const MODE: u8>(
-        of_a: *mut Force,
+        of_a: *mut Force<f64>,
         a: *const u32,
-        of_b: *mut Force,
+        of_b: *mut Force<f64>,
         b: *const u32,
         value: [Self; 3],
         other: [Self; 3],
@@ -273,9 +350,9 @@ impl Lane for Avx2 {
     }
     #[inline(always)]
     unsafe fn scatter_contact<const MODE: u8>(
-        of_a: *mut Force,
+        of_a: *mut Force<f64>,
         a: *const u32,
-        of_b: *mut Force,
+        of_b: *mut Force<f64>,
         b: *const u32,
         force: [Self; 3],
         torque_a: [Self; 3],

@@ -1,160 +1,234 @@
 //! One number at a time: the plain path, lane for lane the arithmetic of the vector path.
 
-use super::{Lane, MINUS, OPPOSITE, SAME};
+use super::{Gather, Lane, MINUS, Number, OPPOSITE, Real, SAME};
 use crate::state::{Body, Force};
 
-impl Lane for f64 {
-    type Mask = bool;
-    const WIDTH: usize = 1;
+macro_rules! scalar {
+    ($number:ty, $meet:expr) => {
+        impl Lane for $number {
+            type Scalar = Self;
+            type Mask = bool;
+            const WIDTH: usize = 1;
 
-    #[inline(always)]
-    fn splat(value: f64) -> Self {
-        value
-    }
-    #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        self + other
-    }
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        self - other
-    }
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        self * other
-    }
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        self / other
-    }
-    #[inline(always)]
-    fn mul_add(self, factor: Self, addend: Self) -> Self {
-        f64::mul_add(self, factor, addend)
-    }
-    #[inline(always)]
-    fn neg_mul_add(self, factor: Self, addend: Self) -> Self {
-        f64::mul_add(-self, factor, addend)
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        f64::sqrt(self)
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        f64::abs(self)
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        if self > other { self } else { other }
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        if self < other { self } else { other }
-    }
-    #[inline(always)]
-    fn less(self, other: Self) -> bool {
-        self < other
-    }
-    #[inline(always)]
-    fn select(mask: bool, yes: Self, no: Self) -> Self {
-        if mask { yes } else { no }
-    }
-    #[inline(always)]
-    fn keep(self, mask: bool) -> Self {
-        if mask { self } else { 0.0 }
-    }
-    #[inline(always)]
-    fn both(a: bool, b: bool) -> bool {
-        a && b
-    }
-    #[inline(always)]
-    fn any(mask: bool) -> bool {
-        mask
-    }
+            #[inline(always)]
+            fn splat(value: f64) -> Self {
+                Self::of(value)
+            }
+            #[inline(always)]
+            fn add(self, other: Self) -> Self {
+                self + other
+            }
+            #[inline(always)]
+            fn sub(self, other: Self) -> Self {
+                self - other
+            }
+            #[inline(always)]
+            fn mul(self, other: Self) -> Self {
+                self * other
+            }
+            #[inline(always)]
+            fn div(self, other: Self) -> Self {
+                self / other
+            }
+            #[inline(always)]
+            fn mul_add(self, factor: Self, addend: Self) -> Self {
+                <$number>::mul_add(self, factor, addend)
+            }
+            #[inline(always)]
+            fn neg_mul_add(self, factor: Self, addend: Self) -> Self {
+                <$number>::mul_add(-self, factor, addend)
+            }
+            #[inline(always)]
+            fn sqrt(self) -> Self {
+                <$number>::sqrt(self)
+            }
+            #[inline(always)]
+            fn abs(self) -> Self {
+                <$number>::abs(self)
+            }
+            #[inline(always)]
+            fn max(self, other: Self) -> Self {
+                if self > other { self } else { other }
+            }
+            #[inline(always)]
+            fn min(self, other: Self) -> Self {
+                if self < other { self } else { other }
+            }
+            #[inline(always)]
+            fn less(self, other: Self) -> bool {
+                self < other
+            }
+            #[inline(always)]
+            fn select(mask: bool, yes: Self, no: Self) -> Self {
+                if mask { yes } else { no }
+            }
+            #[inline(always)]
+            fn keep(self, mask: bool) -> Self {
+                if mask { self } else { 0.0 }
+            }
+            #[inline(always)]
+            fn both(a: bool, b: bool) -> bool {
+                a && b
+            }
+            #[inline(always)]
+            fn any(mask: bool) -> bool {
+                mask
+            }
 
-    #[inline(always)]
-    unsafe fn load(from: *const f64) -> Self {
-        // SAFETY: the caller vouches for one readable number.
-        unsafe { *from }
-    }
-    #[inline(always)]
-    unsafe fn store(self, to: *mut f64) {
-        // SAFETY: the caller vouches for one writable number.
-        unsafe { *to = self }
-    }
-    #[inline(always)]
-    unsafe fn gather(table: *const f64, at: *const u32) -> Self {
-        // SAFETY: the caller vouches for the index.
-        unsafe { *table.add(*at as usize) }
-    }
+            #[inline(always)]
+            unsafe fn load(from: *const Self) -> Self {
+                // SAFETY: the caller vouches for one readable number.
+                unsafe { *from }
+            }
+            #[inline(always)]
+            unsafe fn store(self, to: *mut Self) {
+                // SAFETY: the caller vouches for one writable number.
+                unsafe { *to = self }
+            }
+        }
 
-    #[inline(always)]
-    unsafe fn difference<const FIELD: usize>(bodies: *const Body, a: *const u32, b: *const u32) -> [Self; 3] {
-        // SAFETY: the caller vouches for the indices.
-        let (p, q) = unsafe { (Self::record::<FIELD>(bodies, a), Self::record::<FIELD>(bodies, b)) };
-        [q[0] - p[0], q[1] - p[1], q[2] - p[2]]
-    }
-    #[inline(always)]
-    unsafe fn sum<const FIELD: usize>(bodies: *const Body, a: *const u32, b: *const u32) -> [Self; 3] {
-        // SAFETY: the caller vouches for the indices.
-        let (p, q) = unsafe { (Self::record::<FIELD>(bodies, a), Self::record::<FIELD>(bodies, b)) };
-        [p[0] + q[0], p[1] + q[1], p[2] + q[2]]
-    }
-    #[inline(always)]
-    unsafe fn record<const FIELD: usize>(bodies: *const Body, a: *const u32) -> [Self; 3] {
-        // SAFETY: the caller vouches for the index.
-        let body = unsafe { &*bodies.add(*a as usize) };
-        let row = match FIELD {
-            0 => &body.position,
-            1 => &body.velocity,
-            _ => &body.spin,
-        };
-        [row[0], row[1], row[2]]
-    }
-    #[inline(always)]
-    unsafe fn scatter<const FIELD: usize>(forces: *mut Force, at: *const u32, value: [Self; 3]) {
-        // SAFETY: the caller vouches for the index and for exclusive access.
-        let force = unsafe { &mut *forces.add(*at as usize) };
-        let row = if FIELD == 0 { &mut force.force } else { &mut force.torque };
-        for axis in 0..3 {
-            row[axis] += value[axis];
+        impl Gather for $number {
+            type Wide = f64;
+
+            #[inline(always)]
+            fn narrow(wide: f64) -> Self {
+                Self::of(wide)
+            }
+            #[inline(always)]
+            fn widen(self) -> f64 {
+                self.into()
+            }
+            #[inline(always)]
+            fn meet(square: f64, reach: f64) -> [Self; 2] {
+                $meet(square, reach)
+            }
+            #[inline(always)]
+            unsafe fn gather(table: *const f64, at: *const u32) -> Self {
+                // SAFETY: the caller vouches for the index.
+                unsafe { Self::of(*table.add(*at as usize)) }
+            }
+
+            #[inline(always)]
+            unsafe fn separation(bodies: *const Body<Self>, a: *const u32, b: *const u32) -> [f64; 3] {
+                // SAFETY: the caller vouches for the indices.
+                let (p, q) = unsafe { (Self::position(bodies, a), Self::position(bodies, b)) };
+                [q[0] - p[0], q[1] - p[1], q[2] - p[2]]
+            }
+            #[inline(always)]
+            unsafe fn position(bodies: *const Body<Self>, a: *const u32) -> [f64; 3] {
+                // SAFETY: the caller vouches for the index.
+                let [x, y, z, _] = unsafe { (*bodies.add(*a as usize)).position };
+                [x, y, z]
+            }
+            #[inline(always)]
+            unsafe fn difference<const FIELD: usize>(
+                bodies: *const Body<Self>,
+                a: *const u32,
+                b: *const u32,
+            ) -> [Self; 3] {
+                // SAFETY: the caller vouches for the indices.
+                let (p, q) = unsafe { (Self::record::<FIELD>(bodies, a), Self::record::<FIELD>(bodies, b)) };
+                [q[0] - p[0], q[1] - p[1], q[2] - p[2]]
+            }
+            #[inline(always)]
+            unsafe fn motion(bodies: *const Body<Self>, a: *const u32, b: *const u32) -> [[Self; 3]; 2] {
+                // SAFETY: the caller vouches for the indices.
+                unsafe {
+                    let (p, q) = (Self::record::<2>(bodies, a), Self::record::<2>(bodies, b));
+                    [Self::difference::<1>(bodies, a, b), [p[0] + q[0], p[1] + q[1], p[2] + q[2]]]
+                }
+            }
+            #[inline(always)]
+            unsafe fn record<const FIELD: usize>(bodies: *const Body<Self>, a: *const u32) -> [Self; 3] {
+                // SAFETY: the caller vouches for the index.
+                let body = unsafe { &*bodies.add(*a as usize) };
+                let row = if FIELD == 1 { &body.velocity } else { &body.spin };
+                [row[0], row[1], row[2]]
+            }
+            #[inline(always)]
+            unsafe fn scatter<const FIELD: usize>(
+                forces: *mut Force<Self>,
+                at: *const u32,
+                value: [Self; 3],
+            ) {
+                // SAFETY: the caller vouches for the index and for exclusive access.
+                let force = unsafe { &mut *forces.add(*at as usize) };
+                let row = if FIELD == 0 { &mut force.force } else { &mut force.torque };
+                for axis in 0..3 {
+                    row[axis] += value[axis];
+                }
+            }
+            #[inline(always)]
+            unsafe fn scatter_pair<const FIELD: usize, const MODE: u8>(
+                of_a: *mut Force<Self>,
+                a: *const u32,
+                of_b: *mut Force<Self>,
+                b: *const u32,
+                value: [Self; 3],
+                other: [Self; 3],
+            ) {
+                let on_b = match MODE {
+                    OPPOSITE => [-value[0], -value[1], -value[2]],
+                    SAME => value,
+                    MINUS => [-other[0], -other[1], -other[2]],
+                    _ => other,
+                };
+                // SAFETY: the caller vouches for the indices; the two references do not live at the same time.
+                unsafe {
+                    Self::scatter::<FIELD>(of_a, a, value);
+                    Self::scatter::<FIELD>(of_b, b, on_b);
+                }
+            }
+            #[inline(always)]
+            unsafe fn scatter_contact<const MODE: u8>(
+                of_a: *mut Force<Self>,
+                a: *const u32,
+                of_b: *mut Force<Self>,
+                b: *const u32,
+                force: [Self; 3],
+                torque_a: [Self; 3],
+                torque_b: [Self; 3],
+            ) {
+                // SAFETY: as for `scatter_pair`.
+                unsafe {
+                    Self::scatter_pair::<0, OPPOSITE>(of_a, a, of_b, b, force, force);
+                    Self::scatter_pair::<1, MODE>(of_a, a, of_b, b, torque_a, torque_b);
+                }
+            }
         }
-    }
-    #[inline(always)]
-    unsafe fn scatter_pair<const FIELD: usize, const MODE: u8>(
-        of_a: *mut Force,
-        a: *const u32,
-        of_b: *mut Force,
-        b: *const u32,
-        value: [Self; 3],
-        other: [Self; 3],
-    ) {
-        let on_b = match MODE {
-            OPPOSITE => [-value[0], -value[1], -value[2]],
-            SAME => value,
-            MINUS => [-other[0], -other[1], -other[2]],
-            _ => other,
-        };
-        // SAFETY: the caller vouches for the indices; the two references do not live at the same time.
-        unsafe {
-            Self::scatter::<FIELD>(of_a, a, value);
-            Self::scatter::<FIELD>(of_b, b, on_b);
-        }
-    }
-    #[inline(always)]
-    unsafe fn scatter_contact<const MODE: u8>(
-        of_a: *mut Force,
-        a: *const u32,
-        of_b: *mut Force,
-        b: *const u32,
-        force: [Self; 3],
-        torque_a: [Self; 3],
-        torque_b: [Self; 3],
-    ) {
-        // SAFETY: as for `scatter_pair`.
-        unsafe {
-            Self::scatter_pair::<0, OPPOSITE>(of_a, a, of_b, b, force, force);
-            Self::scatter_pair::<1, MODE>(of_a, a, of_b, b, torque_a, torque_b);
-        }
-    }
+    };
+}
+
+scalar!(f64, meet_double);
+scalar!(f32, meet_single);
+
+/// Overlap and 1/distance; root and quotient side by side rather than one after the other.
+#[inline(always)]
+fn meet_double(square: f64, reach: f64) -> [f64; 2] {
+    let (distance, inverse_square) = (square.sqrt(), 1.0 / square);
+    [reach - distance, distance * inverse_square]
+}
+
+/// Overlap and 1/distance. In single precision reach − distance would be rounded to 1e-7 of the distance, more than
+/// some overlaps; the difference of squares is exact where it is taken, in double precision.
+#[inline(always)]
+fn meet_single(square: f64, reach: f64) -> [f32; 2] {
+    let gap = f32::of((-reach).mul_add(reach, square));
+    let square = f32::of(square);
+    let (distance, inverse_square) = (square.sqrt(), 1.0 / square);
+    [-gap / (distance + f32::of(reach)), distance * inverse_square]
+}
+
+impl Real for f64 {
+    #[cfg(target_arch = "x86_64")]
+    type Fast = super::Avx2;
+    #[cfg(not(target_arch = "x86_64"))]
+    type Fast = Self;
+}
+
+impl Real for f32 {
+    #[cfg(target_arch = "x86_64")]
+    type Fast = super::Avx2Single;
+    #[cfg(not(target_arch = "x86_64"))]
+    type Fast = Self;
 }

@@ -1,7 +1,9 @@
 //! Two dimensions.
 
 use super::{Passing, Space, V1, V2, Vector};
-use crate::lane::Lane;
+use std::marker::PhantomData;
+
+use crate::lane::{Lane, Real};
 use crate::state::Body;
 
 /// Motion across the normal in the plane, along t = (−n_y, n_x).
@@ -13,11 +15,13 @@ pub struct PlanarAcross<L> {
     turn: L,
 }
 
-/// Discs in the plane; a spin is a number, positive from x to y.
+/// Discs in the plane; a spin is a number, positive from x to y. `R` is what velocities, forces and memories of contacts
+/// are kept in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Planar;
+pub struct Planar<R = f64>(PhantomData<R>);
 
-impl Space for Planar {
+impl<R: Real> Space for Planar<R> {
+    type Real = R;
     const DIMENSION: usize = 2;
     type Vector<L: Lane> = V2<L>;
     type Spin<L: Lane> = V1<L>;
@@ -81,15 +85,16 @@ impl Space for Planar {
         V2([L::splat(0.0).sub(shear.mul(y)), shear.mul(x)])
     }
 
-    fn body(position: [f64; 3], velocity: [f64; 3], spin: [f64; 3]) -> Body {
+    fn body(position: [f64; 3], velocity: [f64; 3], spin: [f64; 3]) -> Body<R> {
         Body {
+            aligned: [],
             position: [position[0], position[1], 0.0, 0.0],
-            velocity: [velocity[0], velocity[1], spin[2], 0.0],
-            spin: [0.0; 4],
+            velocity: [velocity[0], velocity[1], spin[2], 0.0].map(R::of),
+            spin: [R::default(); 4],
         }
     }
-    fn motion(body: &Body) -> ([f64; 3], [f64; 3]) {
-        let [u, v, spin, _] = body.velocity;
+    fn motion(body: &Body<R>) -> ([f64; 3], [f64; 3]) {
+        let [u, v, spin, _] = body.velocity.map(R::into);
         ([u, v, 0.0], [0.0, 0.0, spin])
     }
     const SPIN_ROW: usize = 1;

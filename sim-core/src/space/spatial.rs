@@ -1,12 +1,14 @@
 //! Three dimensions.
 
 use super::{Passing, Space, V3, Vector};
-use crate::lane::Lane;
+use std::marker::PhantomData;
+
+use crate::lane::{Lane, Real};
 use crate::state::Body;
 
-/// Spheres in space.
+/// Spheres in space; `R` is what velocities, forces and memories of contacts are kept in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Spatial;
+pub struct Spatial<R = f64>(PhantomData<R>);
 
 /// How contact points slide past each other in space, at t_n − dt/2.
 #[derive(Clone, Copy)]
@@ -45,7 +47,8 @@ fn sub_cross<L: Lane>(start: V3<L>, a: V3<L>, b: V3<L>) -> V3<L> {
     ])
 }
 
-impl Space for Spatial {
+impl<R: Real> Space for Spatial<R> {
+    type Real = R;
     const DIMENSION: usize = 3;
     type Vector<L: Lane> = V3<L>;
     type Spin<L: Lane> = V3<L>;
@@ -109,12 +112,13 @@ impl Space for Spatial {
         shear
     }
 
-    fn body(position: [f64; 3], velocity: [f64; 3], spin: [f64; 3]) -> Body {
-        let row = |v: [f64; 3]| [v[0], v[1], v[2], 0.0];
-        Body { position: row(position), velocity: row(velocity), spin: row(spin) }
+    fn body(position: [f64; 3], velocity: [f64; 3], spin: [f64; 3]) -> Body<R> {
+        let row = |v: [f64; 3]| [v[0], v[1], v[2], 0.0].map(R::of);
+        let [x, y, z] = position;
+        Body { aligned: [], position: [x, y, z, 0.0], velocity: row(velocity), spin: row(spin) }
     }
-    fn motion(body: &Body) -> ([f64; 3], [f64; 3]) {
-        let three = |v: &[f64; 4]| [v[0], v[1], v[2]];
+    fn motion(body: &Body<R>) -> ([f64; 3], [f64; 3]) {
+        let three = |v: &[R; 4]| [v[0], v[1], v[2]].map(R::into);
         (three(&body.velocity), three(&body.spin))
     }
     const SPIN_ROW: usize = 2;

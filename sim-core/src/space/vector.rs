@@ -1,6 +1,6 @@
 //! Vectors of one, two and three lanes.
 
-use crate::lane::Lane;
+use crate::lane::{Lane, Number};
 
 /// What the laws need of a vector.
 pub trait Vector<L: Lane>: Copy {
@@ -24,12 +24,12 @@ pub trait Vector<L: Lane>: Copy {
     ///
     /// # Safety
     /// `from` points to [`Vector::COMPONENTS`] slots of the group, at the first lane to read.
-    unsafe fn load(from: *const f64) -> Self;
+    unsafe fn load(from: *const L::Scalar) -> Self;
     /// Writes the components to consecutive slots of a group memory.
     ///
     /// # Safety
     /// As for [`Vector::load`], writable.
-    unsafe fn store(self, to: *mut f64);
+    unsafe fn store(self, to: *mut L::Scalar);
 }
 
 macro_rules! vector {
@@ -78,16 +78,16 @@ macro_rules! vector {
                 Self([self.0[$first].keep(mask), $(self.0[$rest].keep(mask)),*])
             }
             #[inline(always)]
-            unsafe fn load(from: *const f64) -> Self {
+            unsafe fn load(from: *const L::Scalar) -> Self {
                 // SAFETY: the caller vouches for the slots.
-                unsafe { Self([L::load(from), $(L::load(from.add($rest * crate::lane::GROUP))),*]) }
+                unsafe { Self([L::load(from), $(L::load(from.add($rest * <L::Scalar as Number>::GROUP))),*]) }
             }
             #[inline(always)]
-            unsafe fn store(self, to: *mut f64) {
+            unsafe fn store(self, to: *mut L::Scalar) {
                 // SAFETY: the caller vouches for the slots.
                 unsafe {
                     self.0[$first].store(to);
-                    $(self.0[$rest].store(to.add($rest * crate::lane::GROUP));)*
+                    $(self.0[$rest].store(to.add($rest * <L::Scalar as Number>::GROUP));)*
                 }
             }
         }

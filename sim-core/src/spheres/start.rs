@@ -1,5 +1,6 @@
 //! From a reduced scene to parameters, time step and initial state.
 
+use scene::Precision;
 use scene::spheres::{Approach, DampingMass, ReducedSpheres};
 
 use super::system;
@@ -33,6 +34,7 @@ pub(crate) fn parameters(scene: &ReducedSpheres) -> SphereParameters {
         kt: scene.kt_over_kn,
         wall_mass: scene.wall_mass,
         moving: moving(scene),
+        mixed: scene.precision == Precision::Mixed,
     }
 }
 

@@ -6,6 +6,7 @@
 //! who computes them.
 
 use super::{ContactList, Force, WallList};
+use crate::lane::Number;
 
 /// Particles per chunk aimed at. Part of the definition of the result (order of sums): changing it changes bits.
 const CHUNK: usize = 2300;
@@ -20,34 +21,34 @@ pub fn chunk_bounds(particles: usize) -> Vec<usize> {
 
 /// Forces a chunk exerts on particles of later chunks.
 #[derive(Clone, Debug, Default)]
-pub struct Ghosts {
+pub struct Ghosts<T: Number> {
     /// The particles, ascending.
     pub particles: Vec<u32>,
     /// What they feel from this chunk.
-    pub forces: Vec<Force>,
-    /// Place in `particles` of b of every outer contact, in groups of four.
-    pub targets: Vec<[u32; 4]>,
+    pub forces: Vec<Force<T>>,
+    /// Place in `particles` of b of every outer contact.
+    pub targets: Vec<u32>,
     /// Whether they changed since the other chunks were told.
     pub changed: bool,
 }
 
 /// One chunk: its particles are `start..end`.
 #[derive(Clone, Debug, Default)]
-pub struct Chunk {
+pub struct Chunk<T: Number> {
     /// First particle.
     pub start: usize,
     /// One past the last particle.
     pub end: usize,
     /// Contacts with both particles in the chunk.
-    pub inner: ContactList,
+    pub inner: ContactList<T>,
     /// Contacts with b in a later chunk.
-    pub outer: ContactList,
+    pub outer: ContactList<T>,
     /// Ghosts of the outer contacts.
-    pub ghosts: Ghosts,
+    pub ghosts: Ghosts<T>,
     /// Ghosts of earlier chunks that lie in this one: (chunk, place in its ghosts, particle).
     pub incoming: Vec<(u32, u32, u32)>,
     /// Contacts with each wall.
-    pub walls: [WallList; 6],
+    pub walls: [WallList<T>; 6],
     /// Σ F_α r_α of the contacts its particles own, where space deforms [k_n d].
     pub virial: [f64; 3],
     /// Force of the particles of this chunk on each wall, positive outwards [k_n d].
@@ -63,10 +64,10 @@ pub struct Chunk {
     /// Scratch: the near pairs that may touch.
     pub selected: Vec<(u32, u32)>,
     /// Storage for the next lists, swapped at a refresh.
-    pub spare: [ContactList; 2],
+    pub spare: [ContactList<T>; 2],
 }
 
-impl Chunk {
+impl<T: Number> Chunk<T> {
     /// An empty chunk of particles `start..end` with contact memories of `slots`.
     #[must_use]
     pub fn new(start: usize, end: usize, slots: usize) -> Self {
@@ -90,7 +91,7 @@ impl Chunk {
             + self.walls.iter().map(ContactList::bytes).sum::<usize>()
             + (self.near.capacity() + self.near_start.capacity()) * size_of::<u32>()
             + self.selected.capacity() * size_of::<(u32, u32)>()
-            + self.ghosts.forces.capacity() * size_of::<Force>()
-            + (self.ghosts.particles.capacity() + self.ghosts.targets.capacity() * 4) * size_of::<u32>()
+            + self.ghosts.forces.capacity() * size_of::<Force<T>>()
+            + (self.ghosts.particles.capacity() + self.ghosts.targets.capacity()) * size_of::<u32>()
     }
 }

@@ -1,7 +1,7 @@
 //! Discs of different sizes.
 
 use super::Grains;
-use crate::lane::{GROUP, Lane};
+use crate::lane::{Gather, Lane, Number};
 
 /// Discs with m = d² (unit mass at d = 1) and moment of inertia m d²/8, by slot.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,25 +31,26 @@ impl Grains for Discs {
         [r, s, (product + product) / r.mul_add(r, s * s).sqrt()]
     }
     #[inline(always)]
-    unsafe fn pair<L: Lane>(&self, constants: *const f64) -> [L; 3] {
+    unsafe fn pair<L: Lane>(&self, constants: *const L::Scalar) -> [L; 3] {
+        let row = L::Scalar::GROUP;
         // SAFETY: the caller vouches for the rows.
-        unsafe { [L::load(constants), L::load(constants.add(GROUP)), L::load(constants.add(2 * GROUP))] }
+        unsafe { [L::load(constants), L::load(constants.add(row)), L::load(constants.add(2 * row))] }
     }
     #[inline(always)]
-    unsafe fn radii<L: Lane>(&self, at: *const u32) -> L {
+    unsafe fn radii<L: Gather>(&self, at: *const u32) -> L {
         // SAFETY: the caller vouches for the indices.
         unsafe { L::gather(self.radius.as_ptr(), at) }
     }
     /// √(m_a m_b/(m_a + m_b)) = 2 R_a R_b/√(R_a² + R_b²).
     #[inline(always)]
-    unsafe fn root_pair_mass<L: Lane>(&self, a: *const u32, b: *const u32) -> L {
+    unsafe fn root_pair_mass<L: Gather>(&self, a: *const u32, b: *const u32) -> L {
         // SAFETY: as above.
         let (r, s) = unsafe { (self.radii::<L>(a), self.radii::<L>(b)) };
         let product = r.mul(s);
         product.add(product).div(r.mul_add(r, s.mul(s)).sqrt())
     }
     #[inline(always)]
-    unsafe fn root_wall_mass<L: Lane>(&self, a: *const u32) -> L {
+    unsafe fn root_wall_mass<L: Gather>(&self, a: *const u32) -> L {
         // SAFETY: as above.
         let r = unsafe { self.radii::<L>(a) };
         r.add(r)

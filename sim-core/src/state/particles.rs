@@ -1,27 +1,29 @@
 //! Particle records.
 
-use crate::lane::Lane;
+use crate::lane::{Gather, Lane, Number};
 
 /// Kinematics of one particle: three rows of four numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-#[repr(C, align(32))]
-pub struct Body {
+#[repr(C)]
+pub struct Body<T: Number> {
+    /// Where a body may begin.
+    pub aligned: [T::Alignment; 0],
     /// x, y, z at t_n [d]; the fourth number is the inverse of the particle's displacement budget [1/d].
     pub position: [f64; 4],
     /// Velocity at t_n − dt/2 [d/τ]; the fourth number is zero.
-    pub velocity: [f64; 4],
+    pub velocity: [T; 4],
     /// Angular velocity at t_n − dt/2 [1/τ]; the fourth number is zero.
-    pub spin: [f64; 4],
+    pub spin: [T; 4],
 }
 
 /// Force and torque on one particle; fourth numbers are zero.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(32))]
-pub struct Force {
+pub struct Force<T: Number> {
     /// Force [k_n d]; where space deforms (the plane) the third number is the torque [k_n d²].
-    pub force: [f64; 4],
+    pub force: [T; 4],
     /// Torque [k_n d²].
-    pub torque: [f64; 4],
+    pub torque: [T; 4],
 }
 
 /// Sizes and masses of the particles.
@@ -38,22 +40,22 @@ pub trait Grains: Send + Sync + 'static {
     ///
     /// # Safety
     /// `constants` points to [`Grains::CONSTANTS`] rows of a group at the first lane.
-    unsafe fn pair<L: Lane>(&self, constants: *const f64) -> [L; 3];
+    unsafe fn pair<L: Lane>(&self, constants: *const L::Scalar) -> [L; 3];
     /// Radii of `L::WIDTH` particles [d].
     ///
     /// # Safety
     /// `at` points to `L::WIDTH` valid indices.
-    unsafe fn radii<L: Lane>(&self, at: *const u32) -> L;
+    unsafe fn radii<L: Gather>(&self, at: *const u32) -> L;
     /// √ of the mass in the dashpot of pairs [√m].
     ///
     /// # Safety
     /// As for [`Grains::radii`].
-    unsafe fn root_pair_mass<L: Lane>(&self, a: *const u32, b: *const u32) -> L;
+    unsafe fn root_pair_mass<L: Gather>(&self, a: *const u32, b: *const u32) -> L;
     /// √ of the mass in the dashpot of wall contacts [√m].
     ///
     /// # Safety
     /// As for [`Grains::radii`].
-    unsafe fn root_wall_mass<L: Lane>(&self, a: *const u32) -> L;
+    unsafe fn root_wall_mass<L: Gather>(&self, a: *const u32) -> L;
     /// Radius of one particle [d].
     fn radius(&self, at: usize) -> f64;
     /// Mass of one particle [m].
@@ -92,19 +94,19 @@ impl Grains for Equal {
         [Self::RADIUS, Self::RADIUS, self.root_pair_mass]
     }
     #[inline(always)]
-    unsafe fn pair<L: Lane>(&self, _: *const f64) -> [L; 3] {
+    unsafe fn pair<L: Lane>(&self, _: *const L::Scalar) -> [L; 3] {
         [L::splat(Self::RADIUS), L::splat(Self::RADIUS), L::splat(self.root_pair_mass)]
     }
     #[inline(always)]
-    unsafe fn radii<L: Lane>(&self, _: *const u32) -> L {
+    unsafe fn radii<L: Gather>(&self, _: *const u32) -> L {
         L::splat(Self::RADIUS)
     }
     #[inline(always)]
-    unsafe fn root_pair_mass<L: Lane>(&self, _: *const u32, _: *const u32) -> L {
+    unsafe fn root_pair_mass<L: Gather>(&self, _: *const u32, _: *const u32) -> L {
         L::splat(self.root_pair_mass)
     }
     #[inline(always)]
-    unsafe fn root_wall_mass<L: Lane>(&self, _: *const u32) -> L {
+    unsafe fn root_wall_mass<L: Gather>(&self, _: *const u32) -> L {
         L::splat(1.0)
     }
     #[inline(always)]

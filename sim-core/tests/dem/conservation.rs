@@ -7,7 +7,7 @@ use sim_core::contact::rolling::NoRolling;
 use sim_core::contact::tangential::CoulombSpring;
 use sim_core::contact::{ContactLaw, Law, PairGeometry, PairMotion};
 use sim_core::dem::{SphereParameters, View};
-use sim_core::lane::GROUP;
+use sim_core::lane::Number;
 use sim_core::space::{Spatial, V3, Vector};
 
 use crate::support::{at, build, gas, order, quiet};
@@ -149,16 +149,16 @@ fn tangential_spring_turns_with_a_rigidly_rotating_pair() {
                 let (angle, time) = (2.0, 10.0);
                 let steps = (time / dt) as usize;
                 let omega = angle / time;
-                let mut memory = [0.0; 3 * GROUP];
+                let mut memory = [0.0; 3 * f64::GROUP];
                 for k in 0..3 {
-                    memory[k * GROUP] = spring[k];
+                    memory[k * f64::GROUP] = spring[k];
                 }
                 let mut force = [0.0; 3];
                 for n in 1..=steps {
                     let now = turn(separation, axis, omega * dt * n as f64);
                     let before = turn(separation, axis, omega * dt * (n - 1) as f64);
                     let spin = V3(axis.map(|x| x * omega));
-                    let geometry = PairGeometry::<Spatial, f64> {
+                    let geometry = PairGeometry::<Spatial<f64>, f64> {
                         normal: V3(now.map(|x| x / 0.98)),
                         overlap: 0.02,
                         inverse_distance: 1.0 / 0.98,
@@ -166,7 +166,7 @@ fn tangential_spring_turns_with_a_rigidly_rotating_pair() {
                         radius_b: radius,
                         root_mass: 1.0,
                     };
-                    let motion = PairMotion::<Spatial, f64> {
+                    let motion = PairMotion::<Spatial<f64>, f64> {
                         velocity: V3(std::array::from_fn(|k| (now[k] - before[k]) / dt)),
                         rim: None,
                         spin_sum: spin.scale(2.0),

@@ -5,6 +5,7 @@
 mod collisions;
 mod conservation;
 mod equivalence;
+mod mixed;
 mod stability;
 mod statics;
 mod support;

@@ -10,8 +10,16 @@ fn moduli_predict_the_strain_of_a_small_load() {
     // A lattice with three vacancies (so that discs turn and displace), hardly prestressed: forces are 1e-6 K_N a,
     // their geometric stiffness is 1e-6 of that of the springs; the load step strains by 1e-7 and the secant over
     // overlaps is linear.
-    let parameters =
-        DiscParameters { f0: 1e-6, d0: 1e-3, restitution: 0.015, kt: 0.7, mu: 1e3, kr: 1e-2, mu_r: 1e3 };
+    let parameters = DiscParameters {
+        f0: 1e-6,
+        d0: 1e-3,
+        restitution: 0.015,
+        kt: 0.7,
+        mu: 1e3,
+        kr: 1e-2,
+        mu_r: 1e3,
+        mixed: false,
+    };
     let control = |pressure: f64| CellControl::Pressure { pressure, mass: 50.0, cap: 1e-2 };
     let mut initial = triangular(6, 3, 0.999_999, control(1e-6));
     for vacancy in [29, 15, 14] {
@@ -59,8 +67,16 @@ fn moduli_predict_the_strain_of_a_small_load() {
 fn moduli_of_a_lattice_with_mechanisms() {
     // Frictionless discs that stick to a square lattice, without prestress: every row and every column slides freely,
     // yet C_11 = C_22 = K_N and C_12 = 0, at the bound of Voigt; and so the lattice strains.
-    let parameters =
-        DiscParameters { f0: 1e-6, d0: 1e-3, restitution: 0.015, kt: 0.0, mu: 0.0, kr: 0.0, mu_r: 0.0 };
+    let parameters = DiscParameters {
+        f0: 1e-6,
+        d0: 1e-3,
+        restitution: 0.015,
+        kt: 0.0,
+        mu: 0.0,
+        kr: 0.0,
+        mu_r: 0.0,
+        mixed: false,
+    };
     let control = |pressure: f64| CellControl::Pressure { pressure, mass: 50.0, cap: 1e-2 };
     let (side, spacing) = (6_usize, 1.0 - 1e-6);
     let initial = InitialDiscs {

@@ -17,12 +17,32 @@ fn after(dem: &mut dyn CellDynamics, steps: u64) -> (CellPicture, [f64; 2]) {
 
 #[test]
 fn scalar_and_vector_paths_give_the_same_bits() {
-    for control in [CellControl::Fixed, FREE] {
-        let run = |kernel| {
-            let options = Options { threads: 1, kernel };
-            after(discs(&TABLE_1, &gas(control), 0.1, &options).as_mut(), STEPS)
-        };
-        assert_eq!(run(KernelChoice::Auto), run(KernelChoice::Scalar));
+    for mixed in [false, true] {
+        for control in [CellControl::Fixed, FREE] {
+            let run = |kernel| {
+                let options = Options { threads: 1, kernel };
+                let parameters = DiscParameters { mixed, ..TABLE_1 };
+                after(discs(&parameters, &gas(control), 0.1, &options).as_mut(), STEPS)
+            };
+            assert_eq!(run(KernelChoice::Auto), run(KernelChoice::Scalar));
+        }
+    }
+}
+
+#[test]
+fn mixed_precision_starts_as_double_does() {
+    // A velocity is rounded to 6e-8 of itself in each of the some 30 steps of a collision, like a random walk: before further
+    // collisions have spread that, places differ by at most twice 6e-8 √30 of the way a disc has gone.
+    let places = |mixed| {
+        let parameters = DiscParameters { mixed, ..TABLE_1 };
+        after(discs(&parameters, &gas(FREE), 0.1, &FAST).as_mut(), 300).0
+    };
+    let (double, mixed) = (places(false), places(true));
+    assert_ne!(double.positions, mixed.positions);
+    let fastest = gas(FREE).velocities.iter().map(|v| v[0].hypot(v[1])).fold(0.0, f64::max);
+    let bound = 2.0 * 30.0_f64.sqrt() * 6e-8 * fastest * 30.0;
+    for (one, other) in double.positions.iter().zip(&mixed.positions) {
+        assert!((one[0] - other[0]).hypot(one[1] - other[1]) < bound, "{one:?} {other:?} {bound:e}");
     }
 }
 
@@ -45,11 +65,12 @@ fn null_laws_equal_full_laws_without_strength() {
 fn a_resumed_system_continues_to_the_same_bits() {
     let mut whole = discs(&TABLE_1, &gas(FREE), 0.1, &FAST);
     whole.set_local_damping(0.3);
-    for stop in [777, 9000, 16_384] {
-        let mut first = discs(&TABLE_1, &gas(FREE), 0.1, &FAST);
+    for (stop, mixed) in [(777, false), (9000, true), (16_384, false)] {
+        let parameters = DiscParameters { mixed, ..TABLE_1 };
+        let mut first = discs(&parameters, &gas(FREE), 0.1, &FAST);
         first.set_local_damping(0.3);
         first.run(stop).unwrap();
-        let mut second = restore_discs(&TABLE_1, &gas(FREE).radii, &first.save(), &FAST).unwrap();
+        let mut second = restore_discs(&parameters, &gas(FREE).radii, &first.save(), &FAST).unwrap();
         assert_eq!(second.save(), first.save());
         first.run(STEPS - stop).unwrap();
         second.run(STEPS - stop).unwrap();

@@ -4,12 +4,20 @@ use sim_core::dem::{CellControl, CellDynamics, DiscParameters, InitialDiscs, dis
 use sim_core::{KernelChoice, Options};
 
 /// Laws of Table I in units of K_N, with restitution e_N = 0.015 and μ_R = 0.005 a.
-pub const TABLE_1: DiscParameters =
-    DiscParameters { f0: 1e-5, d0: 1e-3, restitution: 0.015, kt: 1.0, mu: 0.5, kr: 1e-4, mu_r: 0.005 };
+pub const TABLE_1: DiscParameters = DiscParameters {
+    f0: 1e-5,
+    d0: 1e-3,
+    restitution: 0.015,
+    kt: 1.0,
+    mu: 0.5,
+    kr: 1e-4,
+    mu_r: 0.005,
+    mixed: false,
+};
 
 /// Frictionless, without cohesion and damping.
 pub const ELASTIC: DiscParameters =
-    DiscParameters { f0: 0.0, d0: 0.0, restitution: 1.0, kt: 0.0, mu: 0.0, kr: 0.0, mu_r: 0.0 };
+    DiscParameters { f0: 0.0, d0: 0.0, restitution: 1.0, kt: 0.0, mu: 0.0, kr: 0.0, mu_r: 0.0, mixed: false };
 
 pub const FAST: Options = Options { threads: 1, kernel: KernelChoice::Auto };
 

@@ -27,6 +27,7 @@ fn scene() -> Reduced {
         max_steps: None,
         stop: Stop::Steps,
         approach: Approach::Natural,
+        precision: scene::Precision::Double,
     })
 }
 

@@ -227,6 +227,7 @@ pub(super) const KEYS: &[Key] = &[
         meaning: "time after which a state without equilibrium ends the run (it is recorded as not converged)",
         source: OURS,
     },
+    crate::precision::KEY,
 ];
 
 /// Combinations that no run can make sense of.

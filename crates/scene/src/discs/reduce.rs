@@ -64,6 +64,7 @@ impl Description for Discs {
             final_damping: round12(self.final_damping),
             dt: round12(self.dt.unwrap_or_else(|| self.automatic_step())),
             max_time: round12(self.max_time),
+            precision: self.precision,
         }
     }
 

@@ -255,6 +255,7 @@ pub(super) const KEYS: &[Key] = &[
         meaning: "how equilibrium is sought after e has settled",
         source: OURS,
     },
+    crate::precision::KEY,
 ];
 
 /// Combinations that no run can make sense of.

@@ -53,6 +53,7 @@ impl Description for Spheres {
             max_steps: self.max_steps,
             stop: self.stop.rounded(),
             approach: self.approach,
+            precision: self.precision,
         }
     }
 

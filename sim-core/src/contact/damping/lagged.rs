@@ -29,7 +29,14 @@ impl Damping for Lagged {
     const NAME: &'static str = "+lagged_viscous";
 
     #[inline(always)]
-    unsafe fn viscous<L: Lane>(&self, approach: L, root_mass: L, share: L, _: L::Mask, _: *mut f64) -> L {
+    unsafe fn viscous<L: Lane>(
+        &self,
+        approach: L,
+        root_mass: L,
+        share: L,
+        _: L::Mask,
+        _: *mut L::Scalar,
+    ) -> L {
         L::splat(self.coefficient).mul(root_mass).mul(approach).mul(share)
     }
     #[inline(always)]

@@ -13,7 +13,7 @@ impl Damping for NoDamping {
     const NAME: &'static str = "";
 
     #[inline(always)]
-    unsafe fn viscous<L: Lane>(&self, _: L, _: L, _: L, _: L::Mask, _: *mut f64) -> L {
+    unsafe fn viscous<L: Lane>(&self, _: L, _: L, _: L, _: L::Mask, _: *mut L::Scalar) -> L {
         L::splat(0.0)
     }
     #[inline(always)]

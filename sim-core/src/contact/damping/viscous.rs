@@ -9,7 +9,7 @@ use super::Damping;
 use crate::lane::Lane;
 
 /// Memory of a contact without an earlier rate.
-const NO_RATE: f64 = 1e300;
+const NO_RATE: f64 = 1e30;
 
 /// f_v = c √m_eff u, with c = 2 α_n √k_n; with `CLAMP` the sum of elastic and viscous force never pulls.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,7 +45,7 @@ impl<const CLAMP: bool> Damping for Viscous<CLAMP> {
         root_mass: L,
         share: L,
         active: L::Mask,
-        memory: *mut f64,
+        memory: *mut L::Scalar,
     ) -> L {
         // SAFETY: the caller vouches for the slot.
         let before = unsafe { L::load(memory) };

@@ -14,7 +14,7 @@ impl<S: Space> Rolling<S> for NoRolling {
     const NAME: &'static str = "";
 
     #[inline(always)]
-    unsafe fn moment<L: Lane>(&self, _: S::Spin<L>, _: L, _: L::Mask, _: L, _: *mut f64) -> S::Spin<L> {
+    unsafe fn moment<L: Lane>(&self, _: S::Spin<L>, _: L, _: L::Mask, _: L, _: *mut L::Scalar) -> S::Spin<L> {
         S::Spin::zero()
     }
     fn stiffness(&self) -> f64 {

@@ -26,7 +26,7 @@ impl<S: Space> Rolling<S> for SpringSlider {
         elastic: L,
         active: L::Mask,
         dt: L,
-        memory: *mut f64,
+        memory: *mut L::Scalar,
     ) -> S::Spin<L> {
         // SAFETY: the caller vouches for the slots.
         let old: S::Spin<L> = unsafe { S::Spin::load(memory) };

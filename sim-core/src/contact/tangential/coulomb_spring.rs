@@ -6,7 +6,7 @@
 //! projected on the tangent plane, and is cut back to |k_t ξ| = μ f_e, the elastic part of the normal force alone.
 
 use super::Tangential;
-use crate::lane::Lane;
+use crate::lane::{Lane, Real};
 use crate::space::{Spatial, SpatialSlide, V3, Vector, twist};
 
 /// Spring k_t, limit μ f_e.
@@ -27,7 +27,7 @@ impl CoulombSpring {
     }
 }
 
-impl Tangential<Spatial> for CoulombSpring {
+impl<R: Real> Tangential<Spatial<R>> for CoulombSpring {
     const SLOTS: usize = 3;
     const NEEDS_SPIN: bool = true;
     const BOUNDED: bool = true;
@@ -42,7 +42,7 @@ impl Tangential<Spatial> for CoulombSpring {
         elastic: L,
         active: L::Mask,
         dt: L,
-        memory: *mut f64,
+        memory: *mut L::Scalar,
     ) -> (V3<L>, L::Mask) {
         // SAFETY: the caller vouches for the slots.
         let old: V3<L> = unsafe { V3::load(memory) };
@@ -61,7 +61,7 @@ impl Tangential<Spatial> for CoulombSpring {
     }
 
     #[inline(always)]
-    unsafe fn limit<L: Lane>(&self, force: V3<L>, elastic: L, memory: *mut f64) -> V3<L> {
+    unsafe fn limit<L: Lane>(&self, force: V3<L>, elastic: L, memory: *mut L::Scalar) -> V3<L> {
         let bound = L::splat(self.mu).mul(elastic);
         let length = force.dot(force).sqrt();
         let shrink = L::select(self.slides(force, elastic), bound.div(length), L::splat(1.0));

@@ -22,7 +22,7 @@ impl<S: Space> Tangential<S> for Frictionless {
         _: L,
         active: L::Mask,
         _: L,
-        _: *mut f64,
+        _: *mut L::Scalar,
     ) -> (S::Shear<L>, L::Mask) {
         (S::Shear::zero(), active)
     }

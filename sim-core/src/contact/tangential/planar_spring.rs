@@ -5,7 +5,7 @@
 //! projection, no root.
 
 use super::Tangential;
-use crate::lane::Lane;
+use crate::lane::{Lane, Real};
 use crate::space::{Planar, V1, V2};
 
 /// Spring k_t, limit μ f_e, in the plane.
@@ -17,7 +17,7 @@ pub struct PlanarSpring {
     pub mu: f64,
 }
 
-impl Tangential<Planar> for PlanarSpring {
+impl<R: Real> Tangential<Planar<R>> for PlanarSpring {
     const SLOTS: usize = 1;
     const NEEDS_SPIN: bool = true;
     // Swapped bodies reverse n, t and the slip, and with them nothing of what is along t.
@@ -32,7 +32,7 @@ impl Tangential<Planar> for PlanarSpring {
         elastic: L,
         active: L::Mask,
         dt: L,
-        memory: *mut f64,
+        memory: *mut L::Scalar,
     ) -> (V1<L>, L::Mask) {
         // SAFETY: the caller vouches for the slot.
         let old = unsafe { L::load(memory) };

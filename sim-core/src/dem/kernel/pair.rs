@@ -6,18 +6,18 @@ use std::mem::MaybeUninit;
 use super::Pass;
 use crate::boundary::Boundary;
 use crate::contact::{ContactLaw, Encounter, PairGeometry, PairMotion, Response};
-use crate::lane::{Lane, MINUS, OPPOSITE, OTHER, SAME};
+use crate::lane::{Gather, Lane, MINUS, OPPOSITE, OTHER, SAME};
 use crate::space::{Space, Vector};
 use crate::state::{Force, Grains};
 
 /// Where the bodies of a contact or group of contacts are and how they move. What a law, its space or its particles
 /// do not need is never written.
 #[derive(Clone, Copy)]
-pub(super) struct Meeting<S: Space, L: Lane> {
+pub(super) struct Meeting<S: Space, L: Gather> {
     normal: S::Vector<L>,
     overlap: L,
     inverse_distance: L,
-    velocity: S::Vector<L>,
+    velocity: MaybeUninit<S::Vector<L>>,
     /// Where there are spins and particles are equal.
     spin_sum: MaybeUninit<S::Spin<L>>,
     /// The same where contacts resist rolling.
@@ -25,7 +25,7 @@ pub(super) struct Meeting<S: Space, L: Lane> {
     /// ω_a and ω_b where particles differ.
     own_spins: MaybeUninit<[S::Spin<L>; 2]>,
     /// Where space deforms.
-    separation: MaybeUninit<S::Vector<L>>,
+    separation: MaybeUninit<S::Vector<L::Wide>>,
 }
 
 /// How they move against each other.
@@ -47,11 +47,11 @@ pub(super) struct Pressed<S: Space, L: Lane> {
 }
 
 /// One contact or group of contacts: geometry and forces.
-pub struct Evaluated<S: Space, L: Lane> {
+pub struct Evaluated<S: Space, L: Gather> {
     /// Unit normal from a to b.
     pub normal: S::Vector<L>,
     /// Vector from a to b, nearest image, where space deforms; else zero for a pair [d].
-    pub separation: S::Vector<L>,
+    pub separation: S::Vector<L::Wide>,
     /// Overlap [d].
     pub overlap: L,
     /// Parts of the force.
@@ -71,12 +71,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// `a`, `b` point to `L::WIDTH` indices of bodies, `memory` to the slots and `constants` to the constants of these
     /// contacts.
     #[inline(always)]
-    pub unsafe fn pair<L: Lane>(
+    pub unsafe fn pair<L: Gather<Scalar = S::Real>>(
         &self,
         a: *const u32,
         b: *const u32,
-        memory: *mut f64,
-        constants: *const f64,
+        memory: *mut S::Real,
+        constants: *const S::Real,
     ) -> Evaluated<S, L> {
         // SAFETY: the caller vouches.
         unsafe {
@@ -90,51 +90,52 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// # Safety
     /// `a`, `b` point to `L::WIDTH` indices of bodies, `constants` to the constants of these contacts.
     #[inline(always)]
-    pub(super) unsafe fn meet<L: Lane>(
+    pub(super) unsafe fn meet<L: Gather<Scalar = S::Real>>(
         &self,
         a: *const u32,
         b: *const u32,
-        constants: *const f64,
+        constants: *const S::Real,
     ) -> Meeting<S, L> {
         // SAFETY: the caller vouches for the indices; so throughout.
-        let separation = S::vector(unsafe { L::difference::<0>(self.bodies, a, b) });
-        let velocity = S::vector(unsafe { L::difference::<1>(self.bodies, a, b) });
-        let (separation, velocity) = self.boundary.nearest(separation, velocity);
+        let separation: S::Vector<L::Wide> = S::vector(unsafe { L::separation(self.bodies, a, b) });
+        let separation = self.boundary.nearest(separation);
         let square = separation.dot(separation);
-        // Root and quotient side by side rather than one after the other.
-        let (distance, inverse_square) = (square.sqrt(), L::splat(1.0).div(square));
-        let inverse_distance = distance.mul(inverse_square);
-        let normal = separation.scale(inverse_distance);
+        let apart: S::Vector<L> = S::vector(S::vector_record(separation).map(L::narrow));
         // SAFETY: see above.
         let [radius_a, radius_b, _] = unsafe { self.grains.pair::<L>(constants) };
+        let [overlap, inverse_distance] = L::meet(square, radius_a.widen().add(radius_b.widen()));
         let mut meeting = Meeting {
-            normal,
-            overlap: radius_a.add(radius_b).sub(distance),
+            normal: apart.scale(inverse_distance),
+            overlap,
             inverse_distance,
-            velocity,
+            velocity: MaybeUninit::uninit(),
             spin_sum: MaybeUninit::uninit(),
             spin_difference: MaybeUninit::uninit(),
             own_spins: MaybeUninit::uninit(),
             separation: MaybeUninit::uninit(),
         };
-        if C::NEEDS_SPIN {
-            // SAFETY: see above.
-            unsafe {
-                if G::EQUAL {
-                    meeting.spin_sum.write(S::spin(L::sum::<2>(self.bodies, a, b)));
-                    if C::ROLLS {
-                        meeting.spin_difference.write(S::spin(L::difference::<2>(self.bodies, a, b)));
-                    }
-                } else {
-                    let own = |at: *const u32| -> S::Spin<L> {
-                        if S::SPIN_ROW == 1 {
-                            S::spin(L::record::<1>(self.bodies, at))
-                        } else {
-                            S::spin(L::record::<2>(self.bodies, at))
-                        }
-                    };
-                    meeting.own_spins.write([own(a), own(b)]);
+        // SAFETY: see above.
+        unsafe {
+            let between = if C::NEEDS_SPIN && G::EQUAL {
+                let [between, spin_sum] = L::motion(self.bodies, a, b);
+                meeting.spin_sum.write(S::spin(spin_sum));
+                if C::ROLLS {
+                    meeting.spin_difference.write(S::spin(L::difference::<2>(self.bodies, a, b)));
                 }
+                between
+            } else {
+                L::difference::<1>(self.bodies, a, b)
+            };
+            meeting.velocity.write(self.boundary.carried(apart, S::vector(between)));
+            if C::NEEDS_SPIN && !G::EQUAL {
+                let own = |at: *const u32| -> S::Spin<L> {
+                    if S::SPIN_ROW == 1 {
+                        S::spin(L::record::<1>(self.bodies, at))
+                    } else {
+                        S::spin(L::record::<2>(self.bodies, at))
+                    }
+                };
+                meeting.own_spins.write([own(a), own(b)]);
             }
         }
         if B::DEFORMS {
@@ -148,10 +149,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// # Safety
     /// The meeting came from [`Pass::meet`] of this type of pass and these constants.
     #[inline(always)]
-    unsafe fn unfold<L: Lane>(
+    unsafe fn unfold<L: Gather<Scalar = S::Real>>(
         &self,
         meeting: &Meeting<S, L>,
-        constants: *const f64,
+        constants: *const S::Real,
     ) -> (PairGeometry<S, L>, PairMotion<S, L>) {
         let zero: S::Spin<L> = S::Spin::zero();
         // SAFETY: `meet` wrote what the conditions ask for; the caller vouches for the constants.
@@ -179,7 +180,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
                 radius_b,
                 root_mass,
             };
-            (geometry, PairMotion { velocity: meeting.velocity, rim, spin_sum, spin_difference })
+            (
+                geometry,
+                PairMotion { velocity: meeting.velocity.assume_init(), rim, spin_sum, spin_difference },
+            )
         }
     }
 
@@ -188,10 +192,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// # Safety
     /// The meeting came from [`Pass::meet`] of this type of pass and these constants.
     #[inline(always)]
-    pub(super) unsafe fn move_on<L: Lane>(
+    pub(super) unsafe fn move_on<L: Gather<Scalar = S::Real>>(
         &self,
         meeting: &Meeting<S, L>,
-        constants: *const f64,
+        constants: *const S::Real,
     ) -> Moving<S, L> {
         // SAFETY: the caller vouches.
         let (geometry, motion) = unsafe { self.unfold(meeting, constants) };
@@ -205,12 +209,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// Meeting and moving came from the parts before with these constants; `memory` points to the slots of these
     /// contacts.
     #[inline(always)]
-    pub(super) unsafe fn respond<L: Lane>(
+    pub(super) unsafe fn respond<L: Gather<Scalar = S::Real>>(
         &self,
         meeting: &Meeting<S, L>,
         moving: &Moving<S, L>,
-        memory: *mut f64,
-        constants: *const f64,
+        memory: *mut S::Real,
+        constants: *const S::Real,
     ) -> Evaluated<S, L> {
         // SAFETY: the caller vouches.
         let (geometry, motion) = unsafe { self.unfold(meeting, constants) };
@@ -229,12 +233,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// # Safety
     /// As for [`Pass::respond`].
     #[inline(always)]
-    pub(super) unsafe fn press<L: Lane>(
+    pub(super) unsafe fn press<L: Gather<Scalar = S::Real>>(
         &self,
         meeting: &Meeting<S, L>,
         moving: &Moving<S, L>,
-        memory: *mut f64,
-        constants: *const f64,
+        memory: *mut S::Real,
+        constants: *const S::Real,
     ) -> (Pressed<S, L>, bool) {
         // SAFETY: the caller vouches.
         let (geometry, motion) = unsafe { self.unfold(meeting, constants) };
@@ -255,11 +259,11 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// # Safety
     /// Meeting and pressed came from the parts before; `memory` points to the slots of these contacts.
     #[inline(always)]
-    pub(super) unsafe fn limit<L: Lane>(
+    pub(super) unsafe fn limit<L: Gather<Scalar = S::Real>>(
         &self,
         meeting: &Meeting<S, L>,
         pressed: &mut Pressed<S, L>,
-        memory: *mut f64,
+        memory: *mut S::Real,
     ) {
         // SAFETY: the caller vouches.
         pressed.tangential = unsafe { self.law.limit(meeting.overlap, pressed.tangential, memory) };
@@ -270,11 +274,11 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// # Safety
     /// Meeting and pressed came from the parts before with these constants.
     #[inline(always)]
-    pub(super) unsafe fn resolve<L: Lane>(
+    pub(super) unsafe fn resolve<L: Gather<Scalar = S::Real>>(
         &self,
         meeting: &Meeting<S, L>,
         pressed: &Pressed<S, L>,
-        constants: *const f64,
+        constants: *const S::Real,
     ) -> Evaluated<S, L> {
         let zero = L::splat(0.0);
         // SAFETY: `press` wrote it where contacts resist rolling; the caller vouches for the rest.
@@ -293,11 +297,11 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// # Safety
     /// The meeting came from [`Pass::meet`] of this type of pass and these constants.
     #[inline(always)]
-    unsafe fn act<L: Lane>(
+    unsafe fn act<L: Gather<Scalar = S::Real>>(
         &self,
         meeting: &Meeting<S, L>,
         response: Response<S, L>,
-        constants: *const f64,
+        constants: *const S::Real,
     ) -> Evaluated<S, L> {
         let Meeting { normal, overlap, .. } = *meeting;
         let force = S::contact_force(normal, response.normal, response.tangential);
@@ -327,13 +331,13 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// # Safety
     /// As for [`Pass::pair`]; the forces are writable and no other thread touches them.
     #[inline(always)]
-    pub(super) unsafe fn apply<L: Lane>(
+    pub(super) unsafe fn apply<L: Gather<Scalar = S::Real>>(
         &self,
         a: *const u32,
-        forces_b: *mut Force,
+        forces_b: *mut Force<S::Real>,
         b_target: *const u32,
         contact: &Evaluated<S, L>,
-    ) -> [L; 2] {
+    ) -> [L::Wide; 2] {
         let zero = L::splat(0.0);
         let force = S::vector_record(contact.force);
         let (torque_a, torque_b) = (S::spin_record(contact.torque_a), S::spin_record(contact.torque_b));
@@ -346,8 +350,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             // SAFETY: the caller vouches for the indices; so below.
             unsafe { L::scatter_pair::<0, MINUS>(self.forces, a, forces_b, b_target, on_a, on_b) };
             let separation = S::vector_record(contact.separation);
-            let shift = L::splat(VIRIAL_SHIFT);
-            return std::array::from_fn(|axis| force[axis].neg_mul_add(separation[axis], shift).sub(shift));
+            let shift = L::Wide::splat(VIRIAL_SHIFT);
+            return std::array::from_fn(|axis| {
+                force[axis].widen().neg_mul_add(separation[axis], shift).sub(shift)
+            });
         }
         // SAFETY: see above.
         unsafe {
@@ -359,7 +365,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
                 L::scatter_contact::<OTHER>(self.forces, a, forces_b, b_target, force, torque_a, torque_b);
             }
         }
-        [zero; 2]
+        [L::Wide::splat(0.0); 2]
     }
 }
 

@@ -4,7 +4,7 @@ use super::{Evaluated, Pass};
 use crate::boundary::Boundary;
 use crate::contact::{ContactLaw, PairGeometry, PairMotion};
 use crate::control::ServoWalls;
-use crate::lane::{GROUP, Lane};
+use crate::lane::{Gather, Lane, Number};
 use crate::space::{Space, Vector};
 use crate::state::{ContactList, Grains};
 
@@ -14,27 +14,28 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// # Safety
     /// `a` points to `L::WIDTH` indices of bodies, `memory` to the slots of these contacts.
     #[inline(always)]
-    pub unsafe fn wall<L: Lane>(
+    pub unsafe fn wall<L: Gather<Scalar = S::Real>>(
         &self,
         walls: &ServoWalls,
         wall: usize,
         a: *const u32,
-        memory: *mut f64,
+        memory: *mut S::Real,
     ) -> Evaluated<S, L> {
         let axis = ServoWalls::axis(wall);
         let outward = L::splat(ServoWalls::outward(wall));
         // SAFETY: the caller vouches for the indices; so throughout.
-        let (position, own) = unsafe { (L::record::<0>(self.bodies, a), L::record::<1>(self.bodies, a)) };
+        let (position, own) = unsafe { (L::position(self.bodies, a), L::record::<1>(self.bodies, a)) };
         let zero = L::splat(0.0);
         let mut normal = [zero; 3];
         normal[axis] = outward;
         let mut velocity = [zero.sub(own[0]), zero.sub(own[1]), zero.sub(own[2])];
         velocity[axis] = L::splat(walls.velocity[wall]).sub(own[axis]);
         let (normal, velocity) = (S::vector(normal), S::vector(velocity));
-        let distance = L::splat(walls.position[wall]).sub(position[axis]).mul(outward);
+        let distance = L::Wide::splat(walls.position[wall]).sub(position[axis]);
+        let distance = distance.mul(L::Wide::splat(ServoWalls::outward(wall)));
         // SAFETY: see above.
         let radius = unsafe { self.grains.radii::<L>(a) };
-        let overlap = radius.sub(distance);
+        let overlap = L::narrow(radius.widen().sub(distance));
         // SAFETY: see above.
         let root_mass = unsafe { self.grains.root_wall_mass::<L>(a) };
         let geometry = PairGeometry {
@@ -66,7 +67,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         }
         Evaluated {
             normal,
-            separation: normal.scale(distance),
+            separation: S::Vector::zero(),
             overlap,
             response,
             force,
@@ -77,18 +78,19 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
 
     /// One group of contacts with a wall: adds to the particles, returns the normal forces.
     #[inline(always)]
-    pub(super) unsafe fn wall_contact<L: Lane>(
+    pub(super) unsafe fn wall_contact<L: Gather<Scalar = S::Real>>(
         &self,
         walls: &ServoWalls,
         wall: usize,
-        list: &mut ContactList,
+        list: &mut ContactList<S::Real>,
         group: usize,
         lane: usize,
     ) -> L {
+        let group_of = <S::Real as Number>::GROUP;
         // SAFETY: the list holds valid indices of this chunk and memory for its groups.
         unsafe {
-            let a = list.indices[group].as_ptr().add(lane);
-            let memory = list.memory.as_mut_ptr().add(group * C::SLOTS * GROUP + lane);
+            let a = list.indices.as_ptr().add(group * 2 * group_of + lane);
+            let memory = list.memory.as_mut_ptr().add(group * C::SLOTS * group_of + lane);
             let contact = self.wall::<L>(walls, wall, a, memory);
             L::scatter::<0>(self.forces, a, S::vector_record(contact.force));
             if C::NEEDS_SPIN {

@@ -1,0 +1,360 @@
+//! Eight `f32` at a time with AVX2 and FMA; positions are two registers of `f64`.
+//!
+//! See [`super::Avx2`] for the rules of use. A body is 32 bytes of position and 32 of velocity and spin, so whatever two
+//! bodies do past each other takes one look at each; force and torque are 32 bytes, so both are added in one go.
+
+use std::arch::x86_64::{
+    __m128, __m256, _CMP_LT_OQ, _mm_add_ps, _mm_load_ps, _mm_store_ps, _mm_sub_ps, _mm256_add_ps,
+    _mm256_and_ps, _mm256_andnot_ps, _mm256_blendv_ps, _mm256_castps256_ps128, _mm256_cmp_ps,
+    _mm256_cvtpd_ps, _mm256_cvtps_pd, _mm256_div_ps, _mm256_extractf128_ps, _mm256_fmadd_ps,
+    _mm256_fnmadd_ps, _mm256_load_ps, _mm256_loadu_ps, _mm256_max_ps, _mm256_min_ps, _mm256_movemask_ps,
+    _mm256_mul_ps, _mm256_permute2f128_ps, _mm256_set_m128, _mm256_set1_ps, _mm256_setzero_ps,
+    _mm256_shuffle_ps, _mm256_sqrt_ps, _mm256_store_ps, _mm256_storeu_ps, _mm256_sub_ps, _mm256_unpackhi_ps,
+    _mm256_unpacklo_ps, _mm256_xor_ps,
+};
+
+use super::{Avx2, Gather, Lane, MINUS, OPPOSITE, OTHER, Two};
+use crate::state::{Body, Force};
+
+/// Eight floats in one register.
+#[derive(Clone, Copy)]
+pub struct Avx2Single(__m256);
+
+/// Sign bits of the first four.
+const LOWER: [f32; 8] = [-0.0, -0.0, -0.0, -0.0, 0.0, 0.0, 0.0, 0.0];
+
+impl Avx2Single {
+    /// Velocity and spin of a body, four numbers each.
+    #[inline(always)]
+    unsafe fn motion_row(bodies: *const Body<f32>, index: *const u32) -> *const f32 {
+        // SAFETY: a body is four doubles and eight floats; the caller vouches for the index.
+        unsafe { bodies.add(*index as usize).cast::<f32>().add(8) }
+    }
+
+    /// One record of bodies l and l + 4.
+    #[inline(always)]
+    unsafe fn halves<const FIELD: usize>(bodies: *const Body<f32>, at: *const u32) -> __m256 {
+        // SAFETY: the caller vouches for the indices.
+        unsafe {
+            let row = |index| _mm_load_ps(Self::motion_row(bodies, index).add((FIELD - 1) * 4));
+            _mm256_set_m128(row(at.add(4)), row(at))
+        }
+    }
+
+    /// Four rows to three columns, in both halves (the fourth is not used).
+    #[inline(always)]
+    fn columns([r0, r1, r2, r3]: [__m256; 4]) -> [__m256; 3] {
+        // SAFETY: values of this type only exist where AVX2 was detected.
+        unsafe {
+            let (xy01, z01) = (_mm256_unpacklo_ps(r0, r1), _mm256_unpackhi_ps(r0, r1));
+            let (xy23, z23) = (_mm256_unpacklo_ps(r2, r3), _mm256_unpackhi_ps(r2, r3));
+            [
+                _mm256_shuffle_ps::<0x44>(xy01, xy23),
+                _mm256_shuffle_ps::<0xEE>(xy01, xy23),
+                _mm256_shuffle_ps::<0x44>(z01, z23),
+            ]
+        }
+    }
+
+    /// Three columns to four rows, in both halves; fourth component +0.
+    #[inline(always)]
+    fn rows([x, y, z]: [__m256; 3]) -> [__m256; 4] {
+        // SAFETY: see `columns`.
+        unsafe {
+            let zero = _mm256_setzero_ps();
+            let (xy01, xy23) = (_mm256_unpacklo_ps(x, y), _mm256_unpackhi_ps(x, y));
+            let (z01, z23) = (_mm256_unpacklo_ps(z, zero), _mm256_unpackhi_ps(z, zero));
+            [
+                _mm256_shuffle_ps::<0x44>(xy01, z01),
+                _mm256_shuffle_ps::<0xEE>(xy01, z01),
+                _mm256_shuffle_ps::<0x44>(xy23, z23),
+                _mm256_shuffle_ps::<0xEE>(xy23, z23),
+            ]
+        }
+    }
+
+    /// Rows of four, contact after contact.
+    #[inline(always)]
+    fn records(value: [Self; 3]) -> [__m128; 8] {
+        let rows = Self::rows(value.map(|column| column.0));
+        std::array::from_fn(|lane| {
+            // SAFETY: see `columns`.
+            unsafe {
+                if lane < 4 {
+                    _mm256_castps256_ps128(rows[lane])
+                } else {
+                    _mm256_extractf128_ps::<1>(rows[lane - 4])
+                }
+            }
+        })
+    }
+
+    /// Rows of eight, force and torque, contact after contact.
+    #[inline(always)]
+    fn force_rows(force: [Self; 3], torque: [Self; 3]) -> [__m256; 8] {
+        // SAFETY: see `columns`.
+        unsafe {
+            let first = |k: usize| _mm256_permute2f128_ps::<0x20>(force[k].0, torque[k].0);
+            let second = |k: usize| _mm256_permute2f128_ps::<0x31>(force[k].0, torque[k].0);
+            let [r0, r1, r2, r3] = Self::rows([first(0), first(1), first(2)]);
+            let [r4, r5, r6, r7] = Self::rows([second(0), second(1), second(2)]);
+            [r0, r1, r2, r3, r4, r5, r6, r7]
+        }
+    }
+}
+
+impl Lane for Avx2Single {
+    type Scalar = f32;
+    type Mask = Self;
+    const WIDTH: usize = 8;
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        // SAFETY: only called where AVX2 was detected; so for every method below.
+        Self(unsafe { _mm256_set1_ps(value as f32) })
+    }
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm256_add_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm256_sub_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm256_mul_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm256_div_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm256_fmadd_ps(self.0, factor.0, addend.0) })
+    }
+    #[inline(always)]
+    fn neg_mul_add(self, factor: Self, addend: Self) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm256_fnmadd_ps(self.0, factor.0, addend.0) })
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm256_sqrt_ps(self.0) })
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm256_max_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm256_min_ps(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn select(mask: Self, yes: Self, no: Self) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm256_blendv_ps(no.0, yes.0, mask.0) })
+    }
+    #[inline(always)]
+    fn keep(self, mask: Self) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm256_and_ps(self.0, mask.0) })
+    }
+    #[inline(always)]
+    fn both(a: Self, b: Self) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm256_and_ps(a.0, b.0) })
+    }
+    #[inline(always)]
+    fn any(mask: Self) -> bool {
+        // SAFETY: see `splat`.
+        unsafe { _mm256_movemask_ps(mask.0) != 0 }
+    }
+
+    #[inline(always)]
+    unsafe fn load(from: *const f32) -> Self {
+        // SAFETY: the caller vouches for eight readable numbers.
+        Self(unsafe { _mm256_loadu_ps(from) })
+    }
+    #[inline(always)]
+    unsafe fn store(self, to: *mut f32) {
+        // SAFETY: the caller vouches for eight writable numbers.
+        unsafe { _mm256_storeu_ps(to, self.0) }
+    }
+}
+
+impl Gather for Avx2Single {
+    type Wide = Two<Avx2>;
+
+    #[inline(always)]
+    fn narrow(wide: Two<Avx2>) -> Self {
+        // SAFETY: see `splat`.
+        Self(unsafe { _mm256_set_m128(_mm256_cvtpd_ps(wide.1.0), _mm256_cvtpd_ps(wide.0.0)) })
+    }
+    #[inline(always)]
+    fn widen(self) -> Two<Avx2> {
+        // SAFETY: see `splat`.
+        unsafe {
+            Two(
+                Avx2(_mm256_cvtps_pd(_mm256_castps256_ps128(self.0))),
+                Avx2(_mm256_cvtps_pd(_mm256_extractf128_ps::<1>(self.0))),
+            )
+        }
+    }
+    #[inline(always)]
+    fn meet(square: Two<Avx2>, reach: Two<Avx2>) -> [Self; 2] {
+        // The same operations as in the plain path, which says why.
+        let gap = Self::narrow(reach.neg_mul_add(reach, square));
+        let square = Self::narrow(square);
+        let (distance, inverse_square) = (square.sqrt(), Self::splat(1.0).div(square));
+        let minus = Self::splat(-0.0);
+        // SAFETY: see `splat`.
+        let opposite = Self(unsafe { _mm256_xor_ps(gap.0, minus.0) });
+        [opposite.div(distance.add(Self::narrow(reach))), distance.mul(inverse_square)]
+    }
+
+    #[inline(always)]
+    unsafe fn gather(table: *const f64, at: *const u32) -> Self {
+        // SAFETY: the caller vouches for the indices.
+        unsafe { Self::narrow(Two(Avx2::gather(table, at), Avx2::gather(table, at.add(4)))) }
+    }
+
+    #[inline(always)]
+    unsafe fn separation(bodies: *const Body<f32>, a: *const u32, b: *const u32) -> [Two<Avx2>; 3] {
+        // SAFETY: the caller vouches for the indices.
+        unsafe {
+            let [x, y, z] = Avx2::rows_less::<f32, 0>(bodies, a, b);
+            let [u, v, w] = Avx2::rows_less::<f32, 0>(bodies, a.add(4), b.add(4));
+            [Two(x, u), Two(y, v), Two(z, w)]
+        }
+    }
+    #[inline(always)]
+    unsafe fn position(bodies: *const Body<f32>, a: *const u32) -> [Two<Avx2>; 3] {
+        // SAFETY: the caller vouches for the indices.
+        unsafe {
+            let [x, y, z] = Avx2::row_of::<f32, 0>(bodies, a);
+            let [u, v, w] = Avx2::row_of::<f32, 0>(bodies, a.add(4));
+            [Two(x, u), Two(y, v), Two(z, w)]
+        }
+    }
+    #[inline(always)]
+    unsafe fn difference<const FIELD: usize>(
+        bodies: *const Body<f32>,
+        a: *const u32,
+        b: *const u32,
+    ) -> [Self; 3] {
+        // SAFETY: the caller vouches for the indices.
+        let row = |lane: usize| unsafe {
+            _mm256_sub_ps(
+                Self::halves::<FIELD>(bodies, b.add(lane)),
+                Self::halves::<FIELD>(bodies, a.add(lane)),
+            )
+        };
+        Self::columns([row(0), row(1), row(2), row(3)]).map(Self)
+    }
+    #[inline(always)]
+    unsafe fn motion(bodies: *const Body<f32>, a: *const u32, b: *const u32) -> [[Self; 3]; 2] {
+        // SAFETY: the caller vouches for the indices; motion rows are 32-byte aligned.
+        unsafe {
+            let lower = _mm256_loadu_ps(LOWER.as_ptr());
+            // v_b − v_a and ω_b + ω_a.
+            let row = |lane: usize| {
+                let of_a = _mm256_xor_ps(lower, _mm256_load_ps(Self::motion_row(bodies, a.add(lane))));
+                _mm256_add_ps(of_a, _mm256_load_ps(Self::motion_row(bodies, b.add(lane))))
+            };
+            let first = Self::columns([row(0), row(1), row(2), row(3)]);
+            let second = Self::columns([row(4), row(5), row(6), row(7)]);
+            let velocity = |k: usize| Self(_mm256_permute2f128_ps::<0x20>(first[k], second[k]));
+            let spin = |k: usize| Self(_mm256_permute2f128_ps::<0x31>(first[k], second[k]));
+            [[velocity(0), velocity(1), velocity(2)], [spin(0), spin(1), spin(2)]]
+        }
+    }
+    #[inline(always)]
+    unsafe fn record<const FIELD: usize>(bodies: *const Body<f32>, a: *const u32) -> [Self; 3] {
+        // SAFETY: the caller vouches for the indices.
+        let row = |lane: usize| unsafe { Self::halves::<FIELD>(bodies, a.add(lane)) };
+        Self::columns([row(0), row(1), row(2), row(3)]).map(Self)
+    }
+
+    #[inline(always)]
+    unsafe fn scatter<const FIELD: usize>(forces: *mut Force<f32>, at: *const u32, value: [Self; 3]) {
+        // SAFETY: the caller vouches for the indices; a force is two rows of four floats.
+        unsafe {
+            for (lane, row) in Self::records(value).into_iter().enumerate() {
+                let to = forces.add(*at.add(lane) as usize).cast::<f32>().add(FIELD * 4);
+                _mm_store_ps(to, _mm_add_ps(_mm_load_ps(to), row));
+            }
+        }
+    }
+    #[inline(always)]
+    unsafe fn scatter_pair<const FIELD: usize, const MODE: u8>(
+        of_a: *mut Force<f32>,
+        a: *const u32,
+        of_b: *mut Force<f32>,
+        b: *const u32,
+        value: [Self; 3],
+        other: [Self; 3],
+    ) {
+        let rows = Self::records(value);
+        let others = if MODE == OTHER || MODE == MINUS { Self::records(other) } else { rows };
+        // SAFETY: as for `scatter`.
+        unsafe {
+            for lane in 0..8 {
+                let to = of_a.add(*a.add(lane) as usize).cast::<f32>().add(FIELD * 4);
+                _mm_store_ps(to, _mm_add_ps(_mm_load_ps(to), rows[lane]));
+                let to = of_b.add(*b.add(lane) as usize).cast::<f32>().add(FIELD * 4);
+                let sum = _mm_load_ps(to);
+                _mm_store_ps(
+                    to,
+                    if MODE == OPPOSITE || MODE == MINUS {
+                        _mm_sub_ps(sum, others[lane])
+                    } else {
+                        _mm_add_ps(sum, others[lane])
+                    },
+                );
+            }
+        }
+    }
+    #[inline(always)]
+    unsafe fn scatter_contact<const MODE: u8>(
+        of_a: *mut Force<f32>,
+        a: *const u32,
+        of_b: *mut Force<f32>,
+        b: *const u32,
+        force: [Self; 3],
+        torque_a: [Self; 3],
+        torque_b: [Self; 3],
+    ) {
+        let on_a = Self::force_rows(force, torque_a);
+        let on_b = if MODE == OTHER { Self::force_rows(force, torque_b) } else { on_a };
+        // SAFETY: the caller vouches for the indices; a force is 32 bytes, aligned.
+        unsafe {
+            let lower = _mm256_loadu_ps(LOWER.as_ptr());
+            for lane in 0..8 {
+                let to = of_a.add(*a.add(lane) as usize).cast::<f32>();
+                _mm256_store_ps(to, _mm256_add_ps(_mm256_load_ps(to), on_a[lane]));
+                let to = of_b.add(*b.add(lane) as usize).cast::<f32>();
+                let on_b = _mm256_xor_ps(lower, on_b[lane]);
+                _mm256_store_ps(to, _mm256_add_ps(_mm256_load_ps(to), on_b));
+            }
+        }
+    }
+}
