@@ -188,6 +188,8 @@ impl<R: Real> Boundary<Planar<R>> for PeriodicCell {
 mod tests {
     use super::*;
 
+    type Plane = Planar<f64>;
+
     fn cell(control: CellControl) -> PeriodicCell {
         let mut cell = PeriodicCell::new([8.0, 5.0], control);
         cell.rate = [0.01, -0.02];
@@ -200,7 +202,8 @@ mod tests {
         for (far, near) in
             [([7.5, 0.5], [-0.5, 0.5]), ([-4.5, 9.0], [3.5, -1.0]), ([20.0, -2.4], [4.0, -2.4])]
         {
-            let (image, velocity) = cell.nearest::<f64>(V2(far), V2([1.0, 1.0]));
+            let image = Boundary::<Plane>::nearest::<f64>(&cell, V2(far));
+            let velocity = Boundary::<Plane>::carried::<f64>(&cell, image, V2([1.0, 1.0]));
             assert!(
                 (image.0[0].abs() - f64::abs(near[0])).abs() < 1e-14 && (image.0[1] - near[1]).abs() < 1e-14
             );
@@ -213,7 +216,7 @@ mod tests {
     fn images_surround_the_cell() {
         let cell = cell(CellControl::Fixed);
         let mut found = Vec::new();
-        cell.images([0.5, 4.9, 0.0], 1.0, &mut |image| found.push(image));
+        Boundary::<Plane>::images(&cell, [0.5, 4.9, 0.0], 1.0, &mut |image| found.push(image));
         assert_eq!(found, [[0.5, 4.9 - 5.0, 0.0], [8.5, 4.9, 0.0], [8.5, 4.9 - 5.0, 0.0]]);
     }
 
@@ -226,7 +229,7 @@ mod tests {
             // Start half a step back.
             cell.rate = cell.rates([0.0; 3], -0.5 * dt);
             for _ in 0..(20.0 / dt).round() as usize {
-                cell.advance([0.0; 3], dt);
+                Boundary::<Plane>::advance(&mut cell, [0.0; 3], dt);
             }
             cell.edges
         };
@@ -241,7 +244,7 @@ mod tests {
     #[test]
     fn the_rate_is_capped() {
         let mut cell = cell(CellControl::Pressure { pressure: 1.0, mass: 1.0, cap: 0.03 });
-        cell.advance([0.0; 3], 1.0);
+        Boundary::<Plane>::advance(&mut cell, [0.0; 3], 1.0);
         assert_eq!(cell.rate, [-0.03, -0.03]);
     }
 }

@@ -23,6 +23,9 @@ const LEAST_SPEED: f64 = 0.6;
 /// Bounds of the number of steps a refresh is meant to last.
 const STEPS_PER_REFRESH: (f64, f64) = (6.0, 120.0);
 
+/// Bodies and budgets of a chunk, and the chunk.
+type Parts<'a, T> = (&'a mut [Body<T>], &'a mut [f64], &'a mut Chunk<T>);
+
 impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     /// Gives every particle and wall a displacement budget for the coming steps and lists the pairs that may touch
     /// within it. Finds the near pairs anew first when a particle could leave its margin.
@@ -178,10 +181,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     ///
     /// # Safety
     /// The caller has this chunk to itself.
-    unsafe fn parts<'a>(
-        dem: *mut Self,
-        chunk: usize,
-    ) -> (&'a mut [Body<S::Real>], &'a mut [f64], &'a mut Chunk<S::Real>) {
+    unsafe fn parts<'a>(dem: *mut Self, chunk: usize) -> Parts<'a, S::Real> {
         // SAFETY: the caller vouches; chunks do not overlap.
         unsafe {
             let shared = &*dem;
