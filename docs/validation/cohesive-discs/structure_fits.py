@@ -52,9 +52,27 @@ def told(values):
 
 
 print("| μ_R/a | P* | k below [1/a] | function | samples | d_F | ξ [a] | rms of ln I |\n|---|---|---|---|---|---|---|---|")
+def averaged(curves):
+    """Shell by shell, in the order of k: the cells of the samples differ a little."""
+    return [tuple(statistics.fmean(c) for c in zip(*shells)) for shells in zip(*curves)]
+
+
+def jackknife(curves, shape):
+    """Fit of the mean curve: d_F, ξ, rms, with the error of leaving one sample out."""
+    whole = fit(averaged(curves), shape)
+    parts = [fit(averaged([c for c in curves if c is not left]), shape) for left in curves]
+    share = (len(curves) - 1) / len(curves)
+    errors = [math.sqrt(share * sum((part[k] - whole[k]) ** 2 for part in parts)) for k in range(3)]
+    return [f"{whole[k]:.2f} ± {errors[k]:.2f}" for k in (1, 0, 2)]
+
+
 for mu_r, p in sorted({key[:2] for key in samples}):
     for largest in (2.0, math.pi, 4.5, 6.3):
         for shape in (smooth, broken):
-            found = [fit([s for s in samples[key] if s[0] <= largest], shape) for key in sorted(samples) if key[:2] == (mu_r, p)]
+            curves = [[s for s in samples[key] if s[0] <= largest] for key in sorted(samples) if key[:2] == (mu_r, p)]
+            found = [fit(curve, shape) for curve in curves]
             print(f"| {mu_r:g} | {p:g} | {largest:.2f} | {shape.__name__} | {len(found)} | {told([f[1] for f in found])} | "
                   f"{told([f[0] for f in found])} | {told([f[2] for f in found])} |")
+            if len(curves) > 2:
+                print(f"| {mu_r:g} | {p:g} | {largest:.2f} | {shape.__name__}, mean curve | {len(found)} | "
+                      + " | ".join(jackknife(curves, shape)) + " |")

@@ -120,6 +120,23 @@ for mu_r in (0.0, 0.005, 0.5):
         change = mean(100 * (second[s]["phi"] / first[s]["phi"] - 1) for s in both)
         print(f"| {mu_r:g} | {len(both)} | {change} | {part('contacts_kept')} | {part('contacts_lost')} | {part('contacts_gained')} |")
 
+print("\n## Contacts lost and gained per densification, steps of first loading with ΔΦ/Φ > 1 %\n")
+print("| μ_R/a | to P* | samples | lost / (ΔΦ/Φ) | gained / (ΔΦ/Φ) |\n|---|---|---|---|---|")
+for mu_r in (0.005, 0.5):
+    rows = [r for r in series("type2", mu_r) if r["branch"] in ("assembly", "compression")]
+    by_seed = {seed: sorted((r for r in rows if r["seed"] == seed), key=lambda r: r["p"]) for seed in {r["seed"] for r in rows}}
+    found = {}
+    for states in by_seed.values():
+        for first, second in zip(states, states[1:]):
+            change = second["phi"] / first["phi"] - 1
+            if change > 0.01 and 0.1 < second["p"] < 0.8:
+                before = second["contacts_kept"] + second["contacts_lost"]
+                found.setdefault(round(second["p"], 3), []).append(
+                    [second[name] / before / change for name in ("contacts_lost", "contacts_gained")])
+    for p, values in sorted(found.items()):
+        print(f"| {mu_r:g} | {p:g} | {len(values)} | " + " | ".join(mean(v[k] for v in values) for k in (0, 1)) + " |")
+print("| 0.005, paper | 0.237 | 1 | 1.59 | 1.63 |\n| 0.5, paper | 0.237 | 1 | 0.48 | 0.87 |")
+
 print("\n## Structure of type 2\n")
 print("| μ_R/a | P* | samples with a fractal range | d_F | ξ [a] | ξ' [a] |\n|---|---|---|---|---|---|")
 for mu_r in (0.0, 0.005, 0.5):
