@@ -8,7 +8,7 @@ Writes beside this file
   forces.csv   P(F_N) of the states at P* = 0.01, 0.1, 1 and 13.3 on loading, mean over samples
   scattering.csv   I(k) of type 2 at P* = 0 and 0.01, every sample
   fits.json    parameters of eq. (9) from the endpoint /consolidation
-Only the standard library is needed.
+A scene run by two physics versions counts once, as it was collected last. Only the standard library is needed.
 """
 import collections
 import csv
@@ -49,6 +49,10 @@ def fitted(name, answer):
                    "rms_to_paper": curve["rms_to_paper"], **about, **parameters}
 
 
+def sample(row):
+    return tuple(row[name] for name in SCENE)
+
+
 states, jobs, fits, server = {}, {}, [], None
 for word in sys.argv[1:]:
     if word.startswith("http"):
@@ -60,15 +64,15 @@ for word in sys.argv[1:]:
         for line in lines[1:-1]:
             row = dict(line["row"], n=scene["n"], assembly=scene["assembly"], mu_r=scene["mu_r"], seed=scene["seed"],
                        kernel=kernel, physics_version=2)
-            states[word, row["state"]] = row
+            states[sample(row), row["state"]] = row
     else:
         for sweep in sweeps:
             if sweep["name"] == word:
                 fits += fitted(word, json.loads(get(f"{server}/sweeps/{sweep['id']}/consolidation")))
                 for line in get(f"{server}/sweeps/{sweep['id']}/states?format=ndjson").splitlines():
                     row = json.loads(line)
-                    states[row["scene_key"], row["state"]] = row
-                    jobs[row["scene_key"]] = server, row["job"]
+                    states[sample(row), row["state"]] = row
+                    jobs[sample(row)] = server, row["job"]
 rows = sorted(states.values(), key=lambda r: (r["assembly"], r["mu_r"], r["n"], r["seed"], r["state"]))
 with open(HERE / "states.csv", "w", newline="") as file:
     out = csv.writer(file, lineterminator="\n")
