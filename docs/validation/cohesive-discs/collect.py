@@ -69,10 +69,18 @@ for word in sys.argv[1:]:
         for sweep in sweeps:
             if sweep["name"] == word:
                 fits += fitted(word, json.loads(get(f"{server}/sweeps/{sweep['id']}/consolidation")))
+                runs = collections.defaultdict(list)
                 for line in get(f"{server}/sweeps/{sweep['id']}/states?format=ndjson").splitlines():
                     row = json.loads(line)
-                    states[sample(row), row["state"]] = row
-                    jobs[sample(row)] = server, row["job"]
+                    runs[row["scene_key"]].append(row)
+                for rows in runs.values():
+                    key = sample(rows[0])
+                    if not rows[-1]["converged"]:
+                        print(f"left out: {key}, state {rows[-1]['state']} did not converge")
+                        continue
+                    for row in rows:
+                        states[key, row["state"]] = row
+                    jobs[key] = server, rows[0]["job"]
 rows = sorted(states.values(), key=lambda r: (r["assembly"], r["mu_r"], r["n"], r["seed"], r["state"]))
 with open(HERE / "states.csv", "w", newline="") as file:
     out = csv.writer(file, lineterminator="\n")
