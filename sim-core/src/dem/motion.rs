@@ -197,11 +197,12 @@ fn with_space<T: Real, G: Grains, const SPIN: bool>(
         follow::<T, G, SPIN>(bodies, forces, first, grains, deformation.rate, dt, |force, _| force)
     } else {
         let strength = deformation.local_damping;
-        let damped = |force: f64, velocity: f64| {
+        let damped = |force: T, velocity: T| {
+            let (force, velocity): (f64, f64) = (force.into(), velocity.into());
             let power = force * velocity;
             let opposes = if power > 0.0 { -strength } else { strength };
             let opposes = if power == 0.0 { 0.0 } else { opposes };
-            force.mul_add(opposes, force)
+            T::of(force.mul_add(opposes, force))
         };
         follow::<T, G, SPIN>(bodies, forces, first, grains, deformation.rate, dt, damped)
     }
@@ -215,23 +216,27 @@ fn follow<T: Real, G: Grains, const SPIN: bool>(
     grains: &G,
     rate: [f64; 3],
     dt: f64,
-    damped: impl Fn(f64, f64) -> f64,
+    damped: impl Fn(T, T) -> T,
 ) -> f64 {
-    // Rows of the plane: (x, y, 0, inverse budget), (v_x, v_y, ω, 0), (F_x, F_y, M, 0), four numbers at a time.
+    // Rows of the plane: (x, y, 0, inverse budget), (v_x, v_y, ω, 0), (F_x, F_y, M, 0), one row after the other, each in
+    // one register.
     let (mut rush, step) = ([0.0_f64; 4], [dt, dt, 0.0, 0.0]);
     let rate = [rate[0], rate[1], 0.0, 0.0];
     for (k, (body, force)) in bodies.iter_mut().zip(forces).enumerate() {
-        let per_mass = dt * grains.inverse_mass(first + k);
-        let per_inertia = if SPIN { dt * grains.inverse_inertia(first + k) } else { 0.0 };
-        let gain = [per_mass, per_mass, per_inertia, 0.0];
+        let per_mass = T::of(dt * grains.inverse_mass(first + k));
+        let per_inertia = T::of(if SPIN { dt * grains.inverse_inertia(first + k) } else { 0.0 });
+        let gain = [per_mass, per_mass, per_inertia, T::default()];
         let inverse_budget = body.position[3];
+        let (old, pull) = (body.velocity, force.force);
+        let velocity: [T; 4] = std::array::from_fn(|c| damped(pull[c], old[c]).mul_add(gain[c], old[c]));
+        body.velocity = velocity;
+        let velocity = velocity.map(T::into);
         for c in 0..4 {
-            let velocity: f64 = body.velocity[c].into();
-            body.velocity[c] = T::of(damped(force.force[c].into(), velocity).mul_add(gain[c], velocity));
-            let velocity: f64 = body.velocity[c].into();
-            let carried = body.position[c].mul_add(rate[c], velocity);
+            let carried = body.position[c].mul_add(rate[c], velocity[c]);
             body.position[c] = carried.mul_add(step[c], body.position[c]);
-            let hurry = velocity.abs() * inverse_budget;
+        }
+        for c in 0..4 {
+            let hurry = velocity[c].abs() * inverse_budget;
             rush[c] = if hurry > rush[c] { hurry } else { rush[c] };
         }
         force.force = [T::default(); 4];

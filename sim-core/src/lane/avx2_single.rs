@@ -1,6 +1,6 @@
 //! Eight `f32` at a time with AVX2 and FMA; positions are two registers of `f64`.
 //!
-//! See [`super::Avx2`] for the rules of use. A body is 32 bytes of position and 32 of velocity and spin, so whatever two
+//! See [`super::Avx2`] for the rules of use; no closures, which are not always inlined into a caller with the features. A body is 32 bytes of position and 32 of velocity and spin, so whatever two
 //! bodies do past each other takes one look at each; force and torque are 32 bytes, so both are added in one go.
 
 use std::arch::x86_64::{
@@ -36,9 +36,54 @@ impl Avx2Single {
     unsafe fn halves<const FIELD: usize>(bodies: *const Body<f32>, at: *const u32) -> __m256 {
         // SAFETY: the caller vouches for the indices.
         unsafe {
-            let row = |index| _mm_load_ps(Self::motion_row(bodies, index).add((FIELD - 1) * 4));
-            _mm256_set_m128(row(at.add(4)), row(at))
+            let (low, high) = (Self::motion_row(bodies, at), Self::motion_row(bodies, at.add(4)));
+            let shift = (FIELD - 1) * 4;
+            _mm256_set_m128(_mm_load_ps(high.add(shift)), _mm_load_ps(low.add(shift)))
         }
+    }
+
+    /// One record of eight bodies, two to a row.
+    #[inline(always)]
+    unsafe fn four_halves<const FIELD: usize>(bodies: *const Body<f32>, at: *const u32) -> [__m256; 4] {
+        // SAFETY: the caller vouches for the indices.
+        unsafe {
+            [
+                Self::halves::<FIELD>(bodies, at),
+                Self::halves::<FIELD>(bodies, at.add(1)),
+                Self::halves::<FIELD>(bodies, at.add(2)),
+                Self::halves::<FIELD>(bodies, at.add(3)),
+            ]
+        }
+    }
+
+    /// v_b − v_a and ω_b + ω_a of one pair.
+    #[inline(always)]
+    unsafe fn motion_of_pair(bodies: *const Body<f32>, a: *const u32, b: *const u32) -> __m256 {
+        // SAFETY: the caller vouches for the indices; these rows are 32-byte aligned.
+        unsafe {
+            let lower = _mm256_loadu_ps(LOWER.as_ptr());
+            let of_a = _mm256_xor_ps(lower, _mm256_load_ps(Self::motion_row(bodies, a)));
+            _mm256_add_ps(of_a, _mm256_load_ps(Self::motion_row(bodies, b)))
+        }
+    }
+
+    /// The same of four pairs.
+    #[inline(always)]
+    unsafe fn four_motions(bodies: *const Body<f32>, a: *const u32, b: *const u32) -> [__m256; 4] {
+        // SAFETY: the caller vouches for the indices.
+        unsafe {
+            [
+                Self::motion_of_pair(bodies, a, b),
+                Self::motion_of_pair(bodies, a.add(1), b.add(1)),
+                Self::motion_of_pair(bodies, a.add(2), b.add(2)),
+                Self::motion_of_pair(bodies, a.add(3), b.add(3)),
+            ]
+        }
+    }
+
+    #[inline(always)]
+    fn three([x, y, z]: [__m256; 3]) -> [Self; 3] {
+        [Self(x), Self(y), Self(z)]
     }
 
     /// Four rows to three columns, in both halves (the fourth is not used).
@@ -75,18 +120,21 @@ impl Avx2Single {
 
     /// Rows of four, contact after contact.
     #[inline(always)]
-    fn records(value: [Self; 3]) -> [__m128; 8] {
-        let rows = Self::rows(value.map(|column| column.0));
-        std::array::from_fn(|lane| {
-            // SAFETY: see `columns`.
-            unsafe {
-                if lane < 4 {
-                    _mm256_castps256_ps128(rows[lane])
-                } else {
-                    _mm256_extractf128_ps::<1>(rows[lane - 4])
-                }
-            }
-        })
+    fn records([x, y, z]: [Self; 3]) -> [__m128; 8] {
+        let [r0, r1, r2, r3] = Self::rows([x.0, y.0, z.0]);
+        // SAFETY: see `columns`.
+        unsafe {
+            [
+                _mm256_castps256_ps128(r0),
+                _mm256_castps256_ps128(r1),
+                _mm256_castps256_ps128(r2),
+                _mm256_castps256_ps128(r3),
+                _mm256_extractf128_ps::<1>(r0),
+                _mm256_extractf128_ps::<1>(r1),
+                _mm256_extractf128_ps::<1>(r2),
+                _mm256_extractf128_ps::<1>(r3),
+            ]
+        }
     }
 
     /// Rows of eight, force and torque, contact after contact.
@@ -94,10 +142,17 @@ impl Avx2Single {
     fn force_rows(force: [Self; 3], torque: [Self; 3]) -> [__m256; 8] {
         // SAFETY: see `columns`.
         unsafe {
-            let first = |k: usize| _mm256_permute2f128_ps::<0x20>(force[k].0, torque[k].0);
-            let second = |k: usize| _mm256_permute2f128_ps::<0x31>(force[k].0, torque[k].0);
-            let [r0, r1, r2, r3] = Self::rows([first(0), first(1), first(2)]);
-            let [r4, r5, r6, r7] = Self::rows([second(0), second(1), second(2)]);
+            let ([x, y, z], [u, v, w]) = (force, torque);
+            let [r0, r1, r2, r3] = Self::rows([
+                _mm256_permute2f128_ps::<0x20>(x.0, u.0),
+                _mm256_permute2f128_ps::<0x20>(y.0, v.0),
+                _mm256_permute2f128_ps::<0x20>(z.0, w.0),
+            ]);
+            let [r4, r5, r6, r7] = Self::rows([
+                _mm256_permute2f128_ps::<0x31>(x.0, u.0),
+                _mm256_permute2f128_ps::<0x31>(y.0, v.0),
+                _mm256_permute2f128_ps::<0x31>(z.0, w.0),
+            ]);
             [r0, r1, r2, r3, r4, r5, r6, r7]
         }
     }
@@ -262,45 +317,51 @@ impl Gather for Avx2Single {
         b: *const u32,
     ) -> [Self; 3] {
         // SAFETY: the caller vouches for the indices.
-        let row = |lane: usize| unsafe {
-            _mm256_sub_ps(
-                Self::halves::<FIELD>(bodies, b.add(lane)),
-                Self::halves::<FIELD>(bodies, a.add(lane)),
-            )
-        };
-        Self::columns([row(0), row(1), row(2), row(3)]).map(Self)
+        unsafe {
+            let ([p0, p1, p2, p3], [q0, q1, q2, q3]) =
+                (Self::four_halves::<FIELD>(bodies, a), Self::four_halves::<FIELD>(bodies, b));
+            Self::three(Self::columns([
+                _mm256_sub_ps(q0, p0),
+                _mm256_sub_ps(q1, p1),
+                _mm256_sub_ps(q2, p2),
+                _mm256_sub_ps(q3, p3),
+            ]))
+        }
     }
     #[inline(always)]
     unsafe fn motion(bodies: *const Body<f32>, a: *const u32, b: *const u32) -> [[Self; 3]; 2] {
-        // SAFETY: the caller vouches for the indices; motion rows are 32-byte aligned.
+        // SAFETY: the caller vouches for the indices.
         unsafe {
-            let lower = _mm256_loadu_ps(LOWER.as_ptr());
-            // v_b − v_a and ω_b + ω_a.
-            let row = |lane: usize| {
-                let of_a = _mm256_xor_ps(lower, _mm256_load_ps(Self::motion_row(bodies, a.add(lane))));
-                _mm256_add_ps(of_a, _mm256_load_ps(Self::motion_row(bodies, b.add(lane))))
-            };
-            let first = Self::columns([row(0), row(1), row(2), row(3)]);
-            let second = Self::columns([row(4), row(5), row(6), row(7)]);
-            let velocity = |k: usize| Self(_mm256_permute2f128_ps::<0x20>(first[k], second[k]));
-            let spin = |k: usize| Self(_mm256_permute2f128_ps::<0x31>(first[k], second[k]));
-            [[velocity(0), velocity(1), velocity(2)], [spin(0), spin(1), spin(2)]]
+            let [x, y, z] = Self::columns(Self::four_motions(bodies, a, b));
+            let [u, v, w] = Self::columns(Self::four_motions(bodies, a.add(4), b.add(4)));
+            [
+                Self::three([
+                    _mm256_permute2f128_ps::<0x20>(x, u),
+                    _mm256_permute2f128_ps::<0x20>(y, v),
+                    _mm256_permute2f128_ps::<0x20>(z, w),
+                ]),
+                Self::three([
+                    _mm256_permute2f128_ps::<0x31>(x, u),
+                    _mm256_permute2f128_ps::<0x31>(y, v),
+                    _mm256_permute2f128_ps::<0x31>(z, w),
+                ]),
+            ]
         }
     }
     #[inline(always)]
     unsafe fn record<const FIELD: usize>(bodies: *const Body<f32>, a: *const u32) -> [Self; 3] {
         // SAFETY: the caller vouches for the indices.
-        let row = |lane: usize| unsafe { Self::halves::<FIELD>(bodies, a.add(lane)) };
-        Self::columns([row(0), row(1), row(2), row(3)]).map(Self)
+        unsafe { Self::three(Self::columns(Self::four_halves::<FIELD>(bodies, a))) }
     }
 
     #[inline(always)]
     unsafe fn scatter<const FIELD: usize>(forces: *mut Force<f32>, at: *const u32, value: [Self; 3]) {
         // SAFETY: the caller vouches for the indices; a force is two rows of four floats.
         unsafe {
-            for (lane, row) in Self::records(value).into_iter().enumerate() {
+            let rows = Self::records(value);
+            for lane in 0..8 {
                 let to = forces.add(*at.add(lane) as usize).cast::<f32>().add(FIELD * 4);
-                _mm_store_ps(to, _mm_add_ps(_mm_load_ps(to), row));
+                _mm_store_ps(to, _mm_add_ps(_mm_load_ps(to), rows[lane]));
             }
         }
     }

@@ -128,20 +128,29 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             };
             meeting.velocity.write(self.boundary.carried(apart, S::vector(between)));
             if C::NEEDS_SPIN && !G::EQUAL {
-                let own = |at: *const u32| -> S::Spin<L> {
-                    if S::SPIN_ROW == 1 {
-                        S::spin(L::record::<1>(self.bodies, at))
-                    } else {
-                        S::spin(L::record::<2>(self.bodies, at))
-                    }
-                };
-                meeting.own_spins.write([own(a), own(b)]);
+                meeting.own_spins.write([self.spin(a), self.spin(b)]);
             }
         }
         if B::DEFORMS {
             meeting.separation.write(separation);
         }
         meeting
+    }
+
+    /// Spins of bodies.
+    ///
+    /// # Safety
+    /// `at` points to `L::WIDTH` indices of bodies.
+    #[inline(always)]
+    unsafe fn spin<L: Gather<Scalar = S::Real>>(&self, at: *const u32) -> S::Spin<L> {
+        // SAFETY: the caller vouches for the indices.
+        unsafe {
+            if S::SPIN_ROW == 1 {
+                S::spin(L::record::<1>(self.bodies, at))
+            } else {
+                S::spin(L::record::<2>(self.bodies, at))
+            }
+        }
     }
 
     /// What the law sees of a meeting.
