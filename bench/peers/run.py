@@ -85,7 +85,7 @@ def cases(options, program, packing):
         steps = options.steps if options.compaction else max(20, options.steps // 5)  # five times slower than the others
         return call(["yade", "-n", "-x", str(HERE / "yade_case.py"), packing, str(steps)])
 
-    table = {"tamp": ours(), "tamp, adhesion computed": ours("all")}
+    table = {"tamp": ours(), "tamp, mixed precision": ours("mixed"), "tamp, adhesion computed": ours("all")}
     if options.scalar:
         table["tamp, scalar path"] = ours("scalar")
     table |= {"LAMMPS gran/hooke/history": lammps("gran/hooke/history"), "LAMMPS granular": lammps("granular"),
@@ -133,7 +133,6 @@ def main():
     def ns(result):
         return result["seconds"] * 1e9 / (result["n"] * result["steps"])
 
-    base = min(map(ns, results["tamp"]))
     # Pairs of runs next to each other in time: the machine's drift cancels in their ratio.
     print(f"{platform.machine()}, one thread each, {options.repeats} repeats of {options.steps} steps, alternating\n")
     print(f"{'code':27} {'ns/particle-step':>16} {'(all repeats)':>22} {'ratio':>7} {'contacts':>9} {'KE/n':>10}  version")
@@ -153,8 +152,11 @@ def main():
     peers = [r for r in report if not r["code"].startswith("tamp")]
     if peers:
         fastest = min(peers, key=lambda r: r["ns"][0])
-        print(f"\nfastest peer: {fastest['code']}, {fastest['ns'][0] / base:.1f} times our time (minima), "
-              f"{fastest['ratios'][len(fastest['ratios']) // 2]:.1f} times (median of neighbouring runs)")
+        print(f"\nfastest peer: {fastest['code']}")
+        for name in ("tamp", "tamp, mixed precision"):
+            ratios = sorted(ns(peer) / ns(own) for peer, own in zip(results[fastest["code"]], results[name]))
+            print(f"{name}: {fastest['ns'][0] / min(map(ns, results[name])):.1f} times as fast (minima), "
+                  f"{ratios[len(ratios) // 2]:.1f} times (median of neighbouring runs)")
     if options.json:
         Path(options.json).write_text(json.dumps({"results": report, "skipped": reasons}, indent=1))
 

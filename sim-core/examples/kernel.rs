@@ -1,4 +1,4 @@
-//! Times the force kernel on prepared states: `cargo run --release -p sim-core --example kernel -- SCENE.json STEPS`.
+//! Times the force kernel on prepared states: `cargo run --release -p sim-core --example kernel -- SCENE.json STEPS [scalar] [mixed]`.
 //! The scene is advanced by its `max_steps` first; the state is kept beside the scene as `.state.tmp`.
 
 use std::error::Error;
@@ -11,11 +11,15 @@ use sim_core::{KernelChoice, Options};
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().collect();
     let (path, steps) = (&arguments[1], arguments[2].parse::<u64>()?);
-    let scene = scene::Scene::from_json(&serde_json::from_str(&std::fs::read_to_string(path)?)?)
-        .map_err(|problems| format!("{problems:?}"))?
-        .reduce();
+    let mut keys: serde_json::Value = serde_json::from_str(&std::fs::read_to_string(path)?)?;
+    let asked = |word: &str| arguments[3..].iter().any(|argument| argument == word);
+    let mut kept = format!("{path}.state.tmp");
+    if asked("mixed") {
+        keys["precision"] = "mixed".into();
+        kept = format!("{path}.mixed.state.tmp");
+    }
+    let scene = scene::Scene::from_json(&keys).map_err(|problems| format!("{problems:?}"))?.reduce();
     let scene::Reduced::CohesiveSpheres(spheres) = &scene else { return Err("not spheres".into()) };
-    let kept = format!("{path}.state.tmp");
     let options = Options::default();
     let state = match std::fs::read(&kept) {
         Ok(bytes) => bytes,
@@ -30,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (kernel, threads) in
         [(KernelChoice::Auto, 1), (KernelChoice::Auto, 2), (KernelChoice::Auto, 1), (KernelChoice::Scalar, 1)]
     {
-        if kernel == KernelChoice::Scalar && arguments.len() < 4 {
+        if kernel == KernelChoice::Scalar && !asked("scalar") {
             continue;
         }
         let mut bench = Bench::load(&scene, &state, &Options { threads, kernel })?;

@@ -3,9 +3,9 @@
 //! `peer_case export SCENE.json PACKING.csv` advances a scene by its `max_steps` and writes faces and centres [d].
 //! `peer_case loose SCENE.json PACKING.csv RATE` writes the initial state of a scene, with velocities and the rate at which
 //! every edge of the box is to shrink per unit of its first length [1/τ].
-//! `peer_case time PACKING.csv STEPS [all] [scalar]` starts from such a packing, between fixed or moving walls, as the
+//! `peer_case time PACKING.csv STEPS [all] [scalar] [mixed]` starts from such a packing, between fixed or moving walls, as the
 //! peers do: linear spring and dashpot, tangential history, Coulomb friction, no adhesion (`all`: adhesion is computed,
-//! with f_c = 0). Prints one JSON line.
+//! with f_c = 0; `mixed`: in mixed precision). Prints one JSON line.
 
 use std::error::Error;
 use std::fmt::Write as _;
@@ -84,7 +84,13 @@ fn read(packing: &str) -> Result<(InitialState, bool), Box<dyn Error>> {
 }
 
 #[expect(clippy::print_stdout, reason = "an example that prints")]
-fn time(packing: &str, steps: u64, laws: Laws, kernel: KernelChoice) -> Result<(), Box<dyn Error>> {
+fn time(
+    packing: &str,
+    steps: u64,
+    laws: Laws,
+    kernel: KernelChoice,
+    mixed: bool,
+) -> Result<(), Box<dyn Error>> {
     let (initial, moving) = read(packing)?;
     let parameters = SphereParameters {
         alpha_n: 0.25,
@@ -93,6 +99,7 @@ fn time(packing: &str, steps: u64, laws: Laws, kernel: KernelChoice) -> Result<(
         // so heavy that no force of the particles changes their velocity
         wall_mass: if moving { 1e15 } else { 1.0 },
         moving: [moving; 6],
+        mixed,
         ..SphereParameters::springs()
     };
     let mut dem = spheres(&parameters, &initial, DT, laws, &Options { threads: 1, kernel });
@@ -124,11 +131,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         ["time", packing, steps, options @ ..] => {
             let laws = if options.contains(&"all") { Laws::All } else { Laws::Needed };
             let kernel = if options.contains(&"scalar") { KernelChoice::Scalar } else { KernelChoice::Auto };
-            time(packing, steps.parse()?, laws, kernel)
+            time(packing, steps.parse()?, laws, kernel, options.contains(&"mixed"))
         }
         _ => {
             Err("usage: peer_case export SCENE.json PACKING.csv | loose SCENE.json PACKING.csv RATE | time PACKING.csv STEPS \
-                  [all] [scalar]"
+                  [all] [scalar] [mixed]"
                 .into())
         }
     }

@@ -6,6 +6,9 @@ use crate::Cost;
 /// Wall time of one particle-step on one core [ns].
 const NANOSECONDS: f64 = 35.0;
 
+/// The same in mixed precision: two thirds (docs/performance.md).
+const NANOSECONDS_MIXED: f64 = 23.0;
+
 /// Packing and observables of one sphere [s].
 const OVERHEAD_PER_SPHERE: f64 = 2e-6;
 
@@ -50,7 +53,8 @@ impl ReducedSpheres {
         let (steps, _) = self.steps(self.dt.unwrap_or(STEP));
         #[expect(clippy::cast_precision_loss, reason = "an estimate")]
         let overhead = self.n as f64 * OVERHEAD_PER_SPHERE;
-        Cost::of(steps, self.n, NANOSECONDS, overhead)
+        let nanoseconds = if self.precision.is_double() { NANOSECONDS } else { NANOSECONDS_MIXED };
+        Cost::of(steps, self.n, nanoseconds, overhead)
     }
 }
 
