@@ -397,6 +397,8 @@ def precision():
                 cells.append(pm(differences, digits))
                 single = scatter([r.get(q) for r in reference[scene].values()])
                 m, s, k = mean(differences)
+                if not single > 0 or not s > 0:
+                    continue
                 pooled.setdefault((label, q), []).append((place, m / single, s / single, m / s, k, [d / single for d in differences if d is not None]))
             rows.append(cells)
         cells = [label]
