@@ -2,6 +2,8 @@
 //!
 //! `cargo run --release -p sim-core --example convergence > docs/validation/cohesive-spheres/error-study/convergence.csv`
 //!
+//! With the word `mixed` the same cases in mixed precision (`convergence-mixed.csv`).
+//!
 //! - `collision`: rebound speed off a wall against the exact solution (2024, equations 19 to 24), worst over where in a
 //!   step the contact begins, over v0; α_n = 0.25, with and without adhesion.
 //! - `chain`: a bonded chain of 16 spheres swings in its longest longitudinal mode; exact is
@@ -27,7 +29,8 @@ fn boxed(positions: Vec<[f64; 3]>, velocities: Vec<[f64; 3]>, half: f64) -> Init
 
 fn build(parameters: &SphereParameters, initial: &InitialState, dt: f64) -> Box<dyn Dynamics> {
     let options = Options { threads: 1, kernel: KernelChoice::Auto };
-    spheres(parameters, initial, dt, Laws::Needed, &options)
+    let mixed = std::env::args().any(|word| word == "mixed");
+    spheres(&SphereParameters { mixed, ..*parameters }, initial, dt, Laws::Needed, &options)
 }
 
 fn whole(value: f64) -> u64 {

@@ -1,6 +1,6 @@
 //! Energy of conservative packings over long times, for docs/stability.md:
 //!
-//! `cargo run --release -p sim-core --example drift -- [SEEDS 8] [TIME 1e5] > drift.csv`
+//! `cargo run --release -p sim-core --example drift -- [SEEDS 8] [TIME 1e5] [mixed] > drift.csv`
 //!
 //! 27 spheres without friction and damping between six walls under pressure 1e-3, with and without adhesion. The energy
 //! is averaged over the last tenth of every decade of time and compared with the mean of the first 100 τ, so that
@@ -40,10 +40,11 @@ fn steps(time: f64, dt: f64) -> u64 {
     count
 }
 
-fn run(adhesion: f64, dt: f64, seed: u32, until: f64) {
+fn run(adhesion: f64, dt: f64, seed: u32, until: f64, mixed: bool) {
     let parameters = SphereParameters {
         pressure: 1e-3,
         adhesion,
+        mixed,
         wall_mass: 20.0,
         moving: [true; 6],
         ..SphereParameters::springs()
@@ -69,7 +70,10 @@ fn run(adhesion: f64, dt: f64, seed: u32, until: f64) {
 }
 
 fn main() {
-    let mut arguments = std::env::args().skip(1).map(|text| text.parse::<f64>().expect("a number"));
+    let (words, numbers): (Vec<String>, Vec<String>) =
+        std::env::args().skip(1).partition(|text| text == "mixed");
+    let mixed = !words.is_empty();
+    let mut arguments = numbers.iter().map(|text| text.parse::<f64>().expect("a number"));
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a small count")]
     let seeds = arguments.next().unwrap_or(8.0) as u32;
     let until = arguments.next().unwrap_or(1e5);
@@ -77,7 +81,7 @@ fn main() {
     for adhesion in [0.0, 3e-4] {
         for dt in [0.1, 0.05, 0.025] {
             for seed in 1..=seeds {
-                run(adhesion, dt, seed, until);
+                run(adhesion, dt, seed, until, mixed);
             }
         }
     }

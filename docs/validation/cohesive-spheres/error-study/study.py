@@ -425,22 +425,42 @@ def precision():
 
 
 def convergence():
-    say("## Deterministic cases", "")
-    cases = defaultdict(list)
-    for row in read("convergence.csv"):
-        cases[row["case"]].append((row["dt"], row["error"]))
+    say("## Deterministic cases", "", "Order: between the first and the last time step; mixed precision: errors of the same cases beside them.")
     rows = []
-    figure, axis = plt.subplots(figsize=(4.6, 3.4))
-    for name, points in cases.items():
-        points.sort(reverse=True)
-        slope = math.log(points[0][1] / points[-1][1]) / math.log(points[0][0] / points[-1][0])
-        rows.append([name] + [f"{error:.1e}" for _, error in points] + [f"{slope:.2f}"])
-        axis.loglog([dt for dt, _ in points], [error for _, error in points], "o-", ms=3, label=f"{name}, order {slope:.2f}")
+    figure, axis = plt.subplots(figsize=(5.4, 4.2))
+    for name, style in [("convergence.csv", "o-"), ("convergence-mixed.csv", "x:")]:
+        if not (HERE / name).exists():
+            continue
+        mixed = "mixed" in name
+        cases = defaultdict(list)
+        for row in read(name):
+            cases[row["case"]].append((row["dt"], row["error"]))
+        for color, (case, points) in enumerate(cases.items()):
+            points.sort(reverse=True)
+            slope = math.log(points[0][1] / points[-1][1]) / math.log(points[0][0] / points[-1][0])
+            rows.append([case + (", mixed" if mixed else "")] + [f"{error:.1e}" for _, error in points] + [f"{slope:.2f}"])
+            axis.loglog([dt for dt, _ in points], [error for _, error in points], style, color=f"C{color}", ms=3,
+                        label=None if mixed else f"{case}, order {slope:.2f}")
     axis.set_xlabel("time step [τ]")
-    axis.set_ylabel("relative error")
+    axis.set_ylabel("relative error (crosses: mixed precision)")
     axis.legend(fontsize=6)
     save(figure, "convergence.svg")
     table(["case"] + [f"{dt:g} τ" for dt, _ in sorted(next(iter(cases.values())), reverse=True)] + ["order"], rows)
+
+
+def drift():
+    say("## Energy of conservative packings", "", "27 spheres, mean relative error of the energy over seeds ± standard error; root mean square.")
+    rows = []
+    for name, label in [("drift.csv", "f64"), ("drift-mixed.csv", "mixed"), ("drift-long.csv", "f64")]:
+        if not (HERE / name).exists():
+            continue
+        found = defaultdict(list)
+        for row in read(name):
+            found[row["adhesion"], row["dt"], row["time"]].append(row["energy_error"])
+        for (adhesion, dt, time), errors in found.items():
+            m, s, k = mean(errors)
+            rows.append([label, f"{adhesion:g}", f"{dt:g}", f"{time:g}", str(k), f"{m:+.1e} ± {s:.1e}", f"{math.sqrt(np.mean(np.square(errors))):.1e}"])
+    table(["precision", "adhesion", "time step [τ]", "time [τ]", "seeds", "mean", "root mean square"], rows)
 
 
 if __name__ == "__main__":
@@ -448,6 +468,8 @@ if __name__ == "__main__":
     parts = sys.argv[1:] or ["convergence", "step", "size", "stop"]
     if "convergence" in parts:
         convergence()
+    if "drift" in parts:
+        drift()
     if "step" in parts:
         time_step()
     if "size" in parts:

@@ -108,9 +108,11 @@ for k, count in counts.items():
     if k not in known:
         groups[k in longest] += count
 settled = missing * (sum(known.values()) + groups[True] * mean_of(long) + groups[False] * mean_of(rest))
-wrong = missing * math.hypot(groups[True] * mean_of(long) * long[2], groups[False] * mean_of(rest) * rest[2])
+parts = [groups[True] * mean_of(long) * long[2], groups[False] * mean_of(rest) * rest[2]]
+# one ratio for both groups is wrong for both at once
+wrong = missing * (sum(parts) if long is rest else math.hypot(*parts))
 print(f"\nratio R of the {len(ratios)} points: {about(rest)}")
-print(f"ratio R of {len(own)} of the ten longest: {about(long)}")
+print(f"ratio R of {len(own)} of the ten longest: {about(long) if len(own) > 1 else ', '.join(f'{math.exp(r):.2f}' for r in own)}")
 print(f"steps of {len(counts)} runs at n = 1000 and the full-size time step: {sum(counts.values()) / 1e6:.1f} million; the ten longest hold "
       f"{100 * sum(counts[k] for k in longest) / sum(counts.values()):.0f} %; measured at full size: {sum(known.values()) / 1e6:.1f} million "
       f"of {settled / 1e6:.1f} ± {wrong / 1e6:.1f} million")
