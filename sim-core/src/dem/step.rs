@@ -52,8 +52,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     /// One step of a crew.
     ///
     /// A chunk may move as soon as the forces of all chunks up to it are done: later chunks neither add to its forces
-    /// nor look at its bodies, because the lower index owns a contact. The first thread therefore moves every chunk
-    /// right after its forces; the others do their forces first and wait for those before them.
+    /// nor look at its bodies, because the lower index owns a contact. A thread therefore moves every chunk right
+    /// after its forces, once those of the chunks before it are there.
     ///
     /// # Safety
     /// All threads of the crew call this, each with its number, and nobody else uses the system.
@@ -69,17 +69,17 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         unsafe {
             let chunks = (*dem).chunks.len();
             let mine = crew.share(thread, chunks);
-            // A deforming space moves by the virial of all chunks.
-            let fused = mine.start == 0 && !B::DEFORMS;
             for chunk in mine.clone() {
                 Self::force_phase(dem, chunk);
-                if fused {
+                crew.report(chunk, round);
+                if !B::DEFORMS {
+                    crew.await_chunks(0..chunk, round);
                     Self::motion_phase(dem, chunk);
                 }
-                crew.report(chunk, round);
             }
-            if !fused {
-                crew.await_chunks(0..if B::DEFORMS { chunks } else { mine.start }, round);
+            if B::DEFORMS {
+                // A deforming space moves by the virial of all chunks.
+                crew.await_chunks(0..chunks, round);
                 for chunk in mine {
                     Self::motion_phase(dem, chunk);
                 }

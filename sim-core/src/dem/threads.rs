@@ -65,9 +65,10 @@ impl Crew {
         self.stopped.load(Ordering::Acquire)
     }
 
-    /// The chunks of a thread: always the same ones, so that they stay in the cache of its core.
-    pub(super) fn share(&self, thread: usize, chunks: usize) -> std::ops::Range<usize> {
-        chunks * thread / self.threads..chunks * (thread + 1) / self.threads
+    /// The chunks of a thread: always the same ones, so that they stay in the cache of its core; dealt out in turn, so that
+    /// all threads advance through the system together and a chunk seldom waits for those before it.
+    pub(super) fn share(&self, thread: usize, chunks: usize) -> std::iter::StepBy<std::ops::Range<usize>> {
+        (thread..chunks).step_by(self.threads)
     }
 
     /// Says that a chunk is done in this round of work (rounds ascend).
@@ -164,8 +165,8 @@ mod tests {
                             work[chunk].fetch_add(1, Ordering::Relaxed);
                             crew.report(chunk, round);
                         }
-                        crew.await_chunks(0..mine.end, round);
-                        for work in &work[..mine.end] {
+                        crew.await_chunks(0..chunks, round);
+                        for work in work {
                             assert_eq!(work.load(Ordering::Relaxed) as u64, round);
                         }
                         crew.meet(|| {});
