@@ -1,34 +1,13 @@
 //! Fast against plain, null laws against full laws, one thread against several, resumed against uninterrupted.
 
-use sim_core::dem::{Drag, InitialState, Laws, Motion, SphereParameters, restore_spheres, spheres};
-use sim_core::{KernelChoice, Options};
+use sim_core::dem::{Drag, Laws, Motion, SphereParameters, restore_spheres, spheres};
 
-use crate::support::{bits, compaction, gas, quiet, scalar};
-
-fn fast(threads: usize) -> Options {
-    Options { threads, kernel: KernelChoice::Auto }
-}
-
-/// A violent compaction: contacts open, close, slide; walls hit.
-fn violent(n: usize) -> (SphereParameters, InitialState) {
-    (SphereParameters { pressure: 2e-3, ..compaction() }, gas(n, 1.12, 0.03, 11))
-}
+use crate::support::{bits, fast, gas, paths_agree, quiet, scalar, violent};
 
 #[test]
 fn vector_path_gives_the_bits_of_the_scalar_path() {
     let (parameters, initial) = violent(7);
-    let mut plain = spheres(&parameters, &initial, 0.1, Laws::Needed, &scalar());
-    let mut vector = spheres(&parameters, &initial, 0.1, Laws::Needed, &fast(1));
-    let mut contacts = 0;
-    for _ in 0..25 {
-        plain.run(40).unwrap();
-        vector.run(40).unwrap();
-        let (a, b) = (plain.view(), vector.view());
-        contacts = contacts.max(a.contacts.len() + a.wall_contacts.len());
-        assert_eq!(bits(&a), bits(&b), "step {}", a.step);
-        assert_eq!(a, b);
-    }
-    assert!(contacts > 700, "{contacts} contacts");
+    assert!(paths_agree(&parameters, &initial) > 700);
 }
 
 #[test]

@@ -1,20 +1,16 @@
 //! Mixed precision: the same bits on every path, and how far it is from double precision.
 
 use sim_core::dem::{InitialState, Laws, SphereParameters, restore_spheres, spheres};
-use sim_core::{KernelChoice, Options};
 
-use crate::support::{at, bits, build, compaction, gas, quiet, scalar};
+use crate::support::{self, at, bits, build, fast, paths_agree, quiet, scalar};
 
 /// Largest relative rounding of a number in single precision.
 const ROUNDING: f64 = 6e-8;
 
-fn fast(threads: usize) -> Options {
-    Options { threads, kernel: KernelChoice::Auto }
-}
-
-/// A violent compaction in mixed precision: contacts open, close, slide; walls hit.
+/// A violent compaction in mixed precision.
 fn violent(n: usize) -> (SphereParameters, InitialState) {
-    (SphereParameters { pressure: 2e-3, mixed: true, ..compaction() }, gas(n, 1.12, 0.03, 11))
+    let (parameters, initial) = support::violent(n);
+    (SphereParameters { mixed: true, ..parameters }, initial)
 }
 
 #[test]
@@ -23,19 +19,9 @@ fn every_path_gives_the_same_bits() {
     for (alpha_n, mu) in [(0.25, 0.4), (0.0, 0.4), (0.25, 0.0)] {
         let (parameters, initial) = violent(7);
         let parameters = SphereParameters { alpha_n, mu, mu_wall: mu, ..parameters };
-        let mut plain = spheres(&parameters, &initial, 0.1, Laws::Needed, &scalar());
-        let mut vector = spheres(&parameters, &initial, 0.1, Laws::Needed, &fast(1));
-        assert!(plain.kernel().starts_with("dem3d+mixed+"), "{}", plain.kernel());
-        let mut contacts = 0;
-        for _ in 0..25 {
-            plain.run(40).unwrap();
-            vector.run(40).unwrap();
-            let (a, b) = (plain.view(), vector.view());
-            contacts = contacts.max(a.contacts.len() + a.wall_contacts.len());
-            assert_eq!(bits(&a), bits(&b), "step {}", a.step);
-            assert_eq!(a, b);
-        }
-        assert!(contacts > 500, "{contacts} contacts");
+        assert!(paths_agree(&parameters, &initial) > 500);
+        let name = build(&parameters, &initial, 0.1).kernel();
+        assert!(name.starts_with("dem3d+mixed+"), "{name}");
     }
 }
 

@@ -66,6 +66,31 @@ pub fn scalar() -> Options {
     Options { threads: 1, kernel: KernelChoice::Scalar }
 }
 
+pub fn fast(threads: usize) -> Options {
+    Options { threads, kernel: KernelChoice::Auto }
+}
+
+/// A violent compaction: contacts open, close, slide; walls hit.
+pub fn violent(n: usize) -> (SphereParameters, InitialState) {
+    (SphereParameters { pressure: 2e-3, ..compaction() }, gas(n, 1.12, 0.03, 11))
+}
+
+/// Runs the plain and the fastest path side by side, to the last bit; the most contacts they had.
+pub fn paths_agree(parameters: &SphereParameters, initial: &InitialState) -> usize {
+    let mut plain = spheres(parameters, initial, 0.1, Laws::Needed, &scalar());
+    let mut vector = spheres(parameters, initial, 0.1, Laws::Needed, &fast(1));
+    let mut contacts = 0;
+    for _ in 0..25 {
+        plain.run(40).expect("a sane compaction");
+        vector.run(40).expect("a sane compaction");
+        let (a, b) = (plain.view(), vector.view());
+        contacts = contacts.max(a.contacts.len() + a.wall_contacts.len());
+        assert_eq!(bits(&a), bits(&b), "step {}", a.step);
+        assert_eq!(a, b);
+    }
+    contacts
+}
+
 pub fn build(parameters: &SphereParameters, initial: &InitialState, dt: f64) -> Box<dyn Dynamics> {
     spheres(parameters, initial, dt, Laws::Needed, &scalar())
 }
