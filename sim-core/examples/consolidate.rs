@@ -5,7 +5,8 @@
 //! TABLES gets cell, discs and contacts of the end, force histograms and I(k) of every state, as JSON; a CHECKPOINT of
 //! `-` is not written.
 //! With `rest` for STEPS it stops just before the first equilibrium state: one aggregation then serves scenes that
-//! differ in what comes after it (`assembly_cell_mass`, `p0`, `ia`, `path`).
+//! differ in what comes after it (`assembly_cell_mass`, `p0`, `ia`, `path`); with `beforeK`, K a number, just
+//! before the K-th one.
 
 use std::io::{Read, Write};
 use std::time::Instant;
@@ -20,9 +21,14 @@ fn main() {
     else {
         panic!("a scene of cohesive discs");
     };
-    let until_rest = std::env::args().nth(1).is_some_and(|word| word == "rest");
-    let limit: u64 = match std::env::args().nth(1) {
-        Some(word) if !until_rest => word.parse().expect("a number of steps"),
+    let word = std::env::args().nth(1);
+    let until: Option<usize> = match word.as_deref() {
+        Some("rest") => Some(1),
+        Some(word) => word.strip_prefix("before").map(|count| count.parse().expect("the number of a state")),
+        None => None,
+    };
+    let limit: u64 = match word {
+        Some(word) if until.is_none() => word.parse().expect("a number of steps"),
         _ => u64::MAX,
     };
     let kept = std::env::args().nth(2).filter(|path| path != "-");
@@ -41,10 +47,10 @@ fn main() {
     writeln!(out, "{{\"scene\":{scene},\"reduced\":{}}}", serde_json::to_string(&reduced).expect("JSON"))
         .expect("standard output");
     let mut known = run.state_rows().len();
-    let mut before_rest = Vec::new();
+    let mut before_state = Vec::new();
     loop {
-        if until_rest && known == 0 {
-            before_rest = run.save();
+        if until.is_some_and(|count| known + 1 == count) {
+            before_state = run.save();
         }
         let progress = run.advance(2500).expect("a stable run");
         let outcome = run.state_rows();
@@ -61,7 +67,7 @@ fn main() {
             known += 1;
         }
         let steps = progress.steps - before;
-        if progress.finished || steps >= limit || (until_rest && known > 0) {
+        if progress.finished || steps >= limit || until.is_some_and(|count| known >= count) {
             let wall = started.elapsed().as_secs_f64();
             let per = wall * 1e9 / (steps as f64 * progress.particles as f64);
             let counters = run.counters();
@@ -79,7 +85,7 @@ fn main() {
             )
             .expect("standard output");
             if let (Some(path), None) = (&kept, &known_state) {
-                let state = if until_rest { before_rest } else { run.save() };
+                let state = if until.is_some() { before_state } else { run.save() };
                 std::fs::write(path, state).expect("a writable checkpoint");
             }
             if let Some(path) = &tables {

@@ -81,6 +81,8 @@ pub struct Discs {
     pub tolerance: f64,
     /// Coefficient of the local damping of the final stage [1]; 0: none.
     pub final_damping: f64,
+    /// Rate of the drag once the final stage has lasted long [1/T0]; 0: none.
+    pub final_drag: f64,
     /// Time step [√(m/K_N)]; `None`: 0.1.
     pub dt: Option<f64>,
     /// Time after which a state without equilibrium ends the run [T0].
@@ -136,6 +138,10 @@ pub struct ReducedDiscs {
     pub tolerance: f64,
     /// Coefficient of the local damping of the final stage [1].
     pub final_damping: f64,
+    /// Rate of the drag once the final stage has lasted long [1/T0]; left out where there is none, so that older keys
+    /// stay.
+    #[serde(default, skip_serializing_if = "is_none")]
+    pub final_drag: f64,
     /// Time step [√(m/K_N)].
     pub dt: f64,
     /// Time after which a state without equilibrium ends the run [T0].
@@ -148,6 +154,11 @@ pub struct ReducedDiscs {
 /// Sweeps after which pairs and long waves are those of the fluid, from insertion and from a lattice alike
 /// (`docs/validation/cohesive-discs`).
 const DEFAULT_SWEEPS: u64 = 300;
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde calls it so")]
+fn is_none(rate: &f64) -> bool {
+    *rate == 0.0
+}
 
 fn default_sweeps() -> u64 {
     DEFAULT_SWEEPS

@@ -8,7 +8,7 @@ use super::assemble::{assembly_mass, initial_state, parameters, pressure_control
 use super::measure::{Measured, ZERO_FORCE, load_rules, measure};
 use super::scales::Scales;
 use crate::boundary::CellControl;
-use crate::dem::{CellDynamics, CellResiduals, Counters, Fault, discs, restore_discs};
+use crate::dem::{CellDynamics, CellResiduals, Counters, Drag, Fault, discs, restore_discs};
 use crate::loading::{Equilibrium, Leg, LoadingPath, PathState, Residuals, Stage, Tolerances, Verdict};
 use crate::observables::disc_contacts::{DiscContact, clusters, load_carrying};
 use crate::{Options, Progress, SimError, Simulation};
@@ -21,6 +21,10 @@ const CHECKS_PER_POINT: u64 = 8;
 
 /// Normal force beyond which the state makes no sense: overlaps of 5 % of the largest diameter [K_N a].
 const LARGEST_FORCE: f64 = 0.05;
+
+/// The drag acts when the final stage has lasted so long [T0]: the equilibration time of slow steps in the paper
+/// (section II D 2).
+const DRAG_AFTER: f64 = 100.0;
 
 /// What the run is doing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -209,6 +213,10 @@ impl Consolidation {
             self.course.final_stage = damped;
         }
         self.course.damped_checks += u64::from(damped);
+        let (lasted, unit) =
+            ((self.course.damped_checks * CHECK_EVERY) as f64 * self.dem.dt(), self.scales().time);
+        let late = damped && self.scene.final_drag > 0.0 && lasted > DRAG_AFTER * unit;
+        self.dem.set_drag(if late { Drag::All(self.scene.final_drag / unit) } else { Drag::None });
     }
 
     fn begin_next(&mut self) {
@@ -228,6 +236,7 @@ impl Consolidation {
         self.course.final_stage = false;
         self.search = Equilibrium::new(Tolerances::default().scaled(self.scene.tolerance));
         self.dem.set_local_damping(0.0);
+        self.dem.set_drag(Drag::None);
         let control = match phase {
             Phase::Aggregation => CellControl::Fixed,
             Phase::Rest => pressure_control(&self.scene, 0.0, self.scene.cell_mass),

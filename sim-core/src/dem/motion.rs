@@ -16,6 +16,17 @@ pub enum DragRates<'a> {
     Each(&'a [f64]),
 }
 
+impl DragRates<'_> {
+    /// Rate of a slot [1/τ].
+    pub fn of(self, slot: usize) -> f64 {
+        match self {
+            Self::None => 0.0,
+            Self::All(rate) => rate,
+            Self::Each(rates) => rates[slot],
+        }
+    }
+}
+
 /// Moves the bodies of a chunk (`first` is the slot of the first one); returns the largest |v component| over
 /// displacement budget [1/τ].
 ///
@@ -144,16 +155,17 @@ pub unsafe fn advance_with_space<T: Real, G: Grains, const SPIN: bool>(
     first: usize,
     grains: &G,
     deformation: Deformation,
+    drag: DragRates<'_>,
     dt: f64,
 ) -> f64 {
     // SAFETY: the path was detected.
     unsafe {
         match path {
-            Path::Plain => with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt),
+            Path::Plain => with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, drag, dt),
             #[cfg(target_arch = "x86_64")]
-            Path::PlainFma => with_space_fma::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt),
+            Path::PlainFma => with_space_fma::<T, G, SPIN>(bodies, forces, first, grains, deformation, drag, dt),
             #[cfg(target_arch = "x86_64")]
-            Path::Avx2 => with_space_avx2::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt),
+            Path::Avx2 => with_space_avx2::<T, G, SPIN>(bodies, forces, first, grains, deformation, drag, dt),
         }
     }
 }
@@ -166,9 +178,10 @@ fn with_space_fma<T: Real, G: Grains, const SPIN: bool>(
     first: usize,
     grains: &G,
     deformation: Deformation,
+    drag: DragRates<'_>,
     dt: f64,
 ) -> f64 {
-    with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt)
+    with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, drag, dt)
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -179,9 +192,10 @@ fn with_space_avx2<T: Real, G: Grains, const SPIN: bool>(
     first: usize,
     grains: &G,
     deformation: Deformation,
+    drag: DragRates<'_>,
     dt: f64,
 ) -> f64 {
-    with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt)
+    with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, drag, dt)
 }
 
 #[inline(always)]
@@ -191,23 +205,39 @@ fn with_space<T: Real, G: Grains, const SPIN: bool>(
     first: usize,
     grains: &G,
     deformation: Deformation,
+    drag: DragRates<'_>,
     dt: f64,
 ) -> f64 {
-    if deformation.local_damping == 0.0 {
-        follow::<T, G, SPIN>(bodies, forces, first, grains, deformation.rate, dt, |force, _| force)
-    } else {
-        let strength = deformation.local_damping;
-        let damped = |force: T, velocity: T| {
-            let (force, velocity): (f64, f64) = (force.into(), velocity.into());
-            let power = force * velocity;
-            let opposes = if power > 0.0 { -strength } else { strength };
-            let opposes = if power == 0.0 { 0.0 } else { opposes };
-            T::of(force.mul_add(opposes, force))
-        };
-        follow::<T, G, SPIN>(bodies, forces, first, grains, deformation.rate, dt, damped)
+    let (rate, strength) = (deformation.rate, deformation.local_damping);
+    let damped = |force: T, velocity: T| {
+        let (force, velocity): (f64, f64) = (force.into(), velocity.into());
+        let power = force * velocity;
+        let opposes = if power > 0.0 { -strength } else { strength };
+        let opposes = if power == 0.0 { 0.0 } else { opposes };
+        T::of(force.mul_add(opposes, force))
+    };
+    match drag {
+        DragRates::None if strength == 0.0 => {
+            let faster = |_: usize, force: T, gain: T, old: T| force.mul_add(gain, old);
+            follow::<T, G, SPIN>(bodies, forces, first, grains, rate, dt, faster)
+        }
+        DragRates::None => {
+            let faster = |_: usize, force: T, gain: T, old: T| damped(force, old).mul_add(gain, old);
+            follow::<T, G, SPIN>(bodies, forces, first, grains, rate, dt, faster)
+        }
+        DragRates::All(_) | DragRates::Each(_) => {
+            let faster = |slot: usize, force: T, gain: T, old: T| {
+                // As in `dragged`.
+                let half = 0.5 * dt * drag.of(slot);
+                let (keep, share) = (T::of((1.0 - half) / (1.0 + half)), T::of(1.0 / (1.0 + half)));
+                damped(force, old).mul_add(share.mul(gain), keep.mul(old))
+            };
+            follow::<T, G, SPIN>(bodies, forces, first, grains, rate, dt, faster)
+        }
     }
 }
 
+/// One step of the plane; `faster` takes slot, force, dt over mass and v(t−dt/2) to v(t+dt/2).
 #[inline(always)]
 fn follow<T: Real, G: Grains, const SPIN: bool>(
     bodies: &mut [Body<T>],
@@ -216,7 +246,7 @@ fn follow<T: Real, G: Grains, const SPIN: bool>(
     grains: &G,
     rate: [f64; 3],
     dt: f64,
-    damped: impl Fn(T, T) -> T,
+    faster: impl Fn(usize, T, T, T) -> T,
 ) -> f64 {
     // Rows of the plane: (x, y, 0, inverse budget), (v_x, v_y, ω, 0), (F_x, F_y, M, 0), one row after the other, each in
     // one register.
@@ -228,7 +258,7 @@ fn follow<T: Real, G: Grains, const SPIN: bool>(
         let gain = [per_mass, per_mass, per_inertia, T::default()];
         let inverse_budget = body.position[3];
         let (old, pull) = (body.velocity, force.force);
-        let velocity: [T; 4] = std::array::from_fn(|c| damped(pull[c], old[c]).mul_add(gain[c], old[c]));
+        let velocity: [T; 4] = std::array::from_fn(|c| faster(first + k, pull[c], gain[c], old[c]));
         body.velocity = velocity;
         let velocity = velocity.map(T::into);
         for c in 0..4 {

@@ -126,12 +126,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     /// Velocity and spin at t_n, from those at t_n − dt/2 and the forces of t_n.
     fn synchronous(&self, slot: usize, body: &Body<S::Real>, force: &Force<f64>) -> ([f64; 3], [f64; 3]) {
         let half = 0.5 * self.dt;
-        let drag = match self.drag_rates() {
-            super::motion::DragRates::None => 0.0,
-            super::motion::DragRates::All(rate) => rate,
-            super::motion::DragRates::Each(rates) => rates[slot],
-        };
-        let keep = 1.0 / (1.0 + half * drag);
+        let keep = 1.0 / (1.0 + half * self.drag_rates().of(slot));
         let (per_mass, per_inertia) =
             (half * self.grains.inverse_mass(slot), half * self.grains.inverse_inertia(slot));
         let (velocity, spin) = S::motion(body);

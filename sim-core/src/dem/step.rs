@@ -146,6 +146,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                         start,
                         grains,
                         deformation,
+                        drag,
                         dt,
                     )
                 } else {
@@ -156,6 +157,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                         start,
                         grains,
                         deformation,
+                        drag,
                         dt,
                     )
                 }

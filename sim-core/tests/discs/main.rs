@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "a test may panic")]
 #![expect(clippy::needless_range_loop, reason = "components of small vectors are addressed by axis")]
 
+mod drag;
 mod elastic;
 mod lattice;
 mod pair;

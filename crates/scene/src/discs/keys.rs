@@ -212,6 +212,14 @@ pub(super) const KEYS: &[Key] = &[
         source: OURS,
     },
     Key {
+        name: "final_drag",
+        unit: "1/T0",
+        domain: Domain::Real(Bound::Including(0.0), Bound::Including(10.0)),
+        absent: Absent::Default("0"),
+        meaning: "rate of a drag on all motion of discs, once the final stage of a state has lasted 100 T0: for arms that swing without a stiffness; 0: none",
+        source: OURS,
+    },
+    Key {
         name: "dt",
         unit: "tau",
         domain: Domain::Auto(&Domain::Real(Bound::Including(1e-4), Bound::Including(0.14))),

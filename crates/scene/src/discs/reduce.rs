@@ -62,6 +62,7 @@ impl Description for Discs {
             },
             tolerance: round12(self.tolerance),
             final_damping: round12(self.final_damping),
+            final_drag: if self.final_damping > 0.0 { round12(self.final_drag) } else { 0.0 },
             dt: round12(self.dt.unwrap_or_else(|| self.automatic_step())),
             max_time: round12(self.max_time),
             precision: self.precision,
