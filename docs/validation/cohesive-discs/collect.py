@@ -1,13 +1,12 @@
-"""Collects the states of finished sweeps of cohesive discs from coordinators, and of runs of `consolidate`.
+"""Collects the states of finished sweeps of cohesive discs from coordinators; `add_runs.py` adds runs of `consolidate`.
 
-usage: collect.py SERVER NAME... [SERVER NAME...] [FILE.jsonl...]
+usage: collect.py SERVER NAME... [SERVER NAME...]
        (for example collect.py http://127.0.0.1:8300 consolidation-2008)
 
 Writes beside this file
   states.csv   one row per equilibrium state: scene, observables, residuals
   forces.csv   P(F_N) of the states at P* = 0.01, 0.1, 1 and 13.3 on loading, mean over samples
   scattering.csv   I(k) of type 2 at P* = 0 and 0.01, every sample
-  fits.json    parameters of eq. (9) from the endpoint /consolidation
 A scene run by two physics versions counts once, as it was collected last. Only the standard library is needed.
 """
 import collections
@@ -17,14 +16,9 @@ import pathlib
 import sys
 import urllib.request
 
+from columns import RUN, SCENE, STATE, short
+
 HERE = pathlib.Path(__file__).parent
-SCENE = ["n", "assembly", "mu_r", "seed"]
-STATE = ["state", "branch", "leg", "p", "phi", "z", "z_plus", "z_minus", "z_zero", "z_distant", "z_star",
-         "rattler_share", "x22", "mean_normal_force", "mean_normal_force_expected", "z2_ratio", "bulk", "shear",
-         "bulk_voigt", "shear_voigt", "bulk_reuss", "stiffness_sign", "fractal_dimension", "correlation_length",
-         "pore_radius", "contacts_kept", "contacts_lost", "contacts_gained", "converged", "sliding",
-         "residual_force", "residual_moment", "residual_stress", "residual_kinetic", "steps", "time"]
-RUN = ["scene_key", "kernel", "physics_version", "code_version"]
 PRESSURES = [0.01, 0.1, 1.0, 13.335214]
 
 
@@ -33,42 +27,18 @@ def get(url):
         return answer.read().decode()
 
 
-def short(value):
-    return f"{value:.8g}" if isinstance(value, float) else "" if value is None else str(value)
-
-
-def fitted(name, answer):
-    """Parameters of (9) of the curves of type 2."""
-    for curve in answer["curves"]:
-        fit = curve["fit"].get("value", curve["fit"])
-        if curve["assembly"] == "type2" and "lambda" in fit:
-            parameters = {key: [fit[key]["value"], fit[key]["se"]]
-                          for key in ("phi_0", "lambda", "phi_max", "alpha", "p_star_1")}
-            about = {key: fit[key] for key in ("p_star_0", "straight", "method", "errors")}
-            yield {"sweep": name, "mu_r": curve["mu_r"], "samples": curve["samples"],
-                   "rms_to_paper": curve["rms_to_paper"], **about, **parameters}
-
-
 def sample(row):
     return tuple(row[name] for name in SCENE)
 
 
-states, jobs, fits, server = {}, {}, [], None
+states, jobs, server = {}, {}, None
 for word in sys.argv[1:]:
     if word.startswith("http"):
         server = word.rstrip("/") + "/v1"
         sweeps = json.loads(get(f"{server}/sweeps"))["items"]
-    elif word.endswith(".jsonl"):
-        lines = [json.loads(line) for line in open(word)]
-        scene, kernel = lines[0]["reduced"], lines[-1]["kernel"]
-        for line in lines[1:-1]:
-            row = dict(line["row"], n=scene["n"], assembly=scene["assembly"], mu_r=scene["mu_r"], seed=scene["seed"],
-                       kernel=kernel, physics_version=2)
-            states[sample(row), row["state"]] = row
     else:
         for sweep in sweeps:
             if sweep["name"] == word:
-                fits += fitted(word, json.loads(get(f"{server}/sweeps/{sweep['id']}/consolidation")))
                 runs = collections.defaultdict(list)
                 for line in get(f"{server}/sweeps/{sweep['id']}/states?format=ndjson").splitlines():
                     row = json.loads(line)
@@ -104,11 +74,11 @@ for key, (server, job) in jobs.items():
     for state, k, intensity in zip(column["state"], column["k"], column["intensity"]):
         row = states[key, int(state)]
         if row["assembly"] == "type2" and row["branch"] in ("rest", "assembly"):
-            scattering.append([row["mu_r"], row["seed"], row["p"], short(k), short(intensity)])
+            scattering.append([row["n"], row["mu_r"], row["seed"], row["p"], short(k), short(intensity)])
 with open(HERE / "scattering.csv", "w", newline="") as file:
     out = csv.writer(file, lineterminator="\n")
-    out.writerow(["mu_r", "seed", "p", "k", "intensity"])
-    out.writerows(sorted(scattering, key=lambda r: (r[0], r[1], r[2], float(r[3]))))
+    out.writerow(["n", "mu_r", "seed", "p", "k", "intensity"])
+    out.writerows(sorted(scattering, key=lambda r: (*r[:4], float(r[4]))))
 with open(HERE / "forces.csv", "w", newline="") as file:
     out = csv.writer(file, lineterminator="\n")
     out.writerow(["assembly", "mu_r", "p", "normal_force", "density", "samples"])
@@ -116,5 +86,4 @@ with open(HERE / "forces.csv", "w", newline="") as file:
         mean = sum(densities) / len(densities)
         if mean > 0:
             out.writerow([assembly, mu_r, p, short(force), short(mean), len(densities)])
-(HERE / "fits.json").write_text(json.dumps(fits, indent=1) + "\n")
 print(f"{len(jobs)} runs, {len(rows)} states")

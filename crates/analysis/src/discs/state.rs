@@ -50,14 +50,22 @@ pub struct DiscState {
 const VARIANT_KEYS: [&str; 9] =
     ["n", "mu", "kr", "kappa", "kt_over_kn", "d0", "size_ratio", "phi_i", "cell_mass"];
 
+/// Keys that older rows do not have, and the value that is as good as none: they count only when they differ.
+const LATER_KEYS: [(&str, &str); 3] =
+    [("final_drag", "0"), ("fluid_sweeps", "300"), ("precision", "\"double\"")];
+
 impl DiscState {
     /// The states of one run: its scene and record in `run`, its rows in `states`. Rows without p or phi are left out.
     #[must_use]
     pub fn from_run(run: &Row, states: &[Row]) -> Vec<Self> {
-        let variant: Vec<String> = VARIANT_KEYS
-            .iter()
-            .filter_map(|key| run.get(key).map(|cell| format!("{key}={}", cell.to_json())))
-            .collect();
+        let told = |key: &str| run.get(key).map(|cell| cell.to_json().to_string());
+        let early = VARIANT_KEYS.iter().filter_map(|key| told(key).map(|value| format!("{key}={value}")));
+        let later = LATER_KEYS.iter().filter_map(|(key, usual)| {
+            told(key)
+                .filter(|value| value.trim_end_matches(".0") != *usual)
+                .map(|value| format!("{key}={value}"))
+        });
+        let variant: Vec<String> = early.chain(later).collect();
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small whole numbers")]
         let whole = |value: Option<f64>| value.unwrap_or(0.0) as u64;
         let state = |row: &Row| {
@@ -108,6 +116,7 @@ mod tests {
         assert_eq!(states.len(), 1);
         let state = &states[0];
         assert_eq!((state.seed, state.assembly.as_str(), state.mu_r), (3, "type1", 0.5));
+        assert_eq!(state.variant, "");
         assert!(state.is_loading() && !state.converged && state.bulk.is_none());
     }
 }
