@@ -31,8 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for (mu_r, suffix) in [(0.0, "-0"), (0.005, ""), (0.5, "-0.5")] {
         let of_one: Vec<DiscState> = states.iter().filter(|state| state.mu_r == mu_r).cloned().collect();
         let consolidated = consolidation(&of_one, &ConsolidationOptions::default())?;
-        let write =
-            |name: &str, svg: String| std::fs::write(folder.join(format!("{name}{suffix}.svg")), svg);
+        let write = |name: &str, svg: String| std::fs::write(folder.join(format!("{name}{suffix}.svg")), svg);
         write("consolidation", consolidation_svg(&consolidated))?;
         write("moduli", moduli_svg(&moduli(&of_one)?))?;
         write("structure", structure_svg(&structure(&of_one)?))?;

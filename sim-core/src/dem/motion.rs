@@ -163,7 +163,9 @@ pub unsafe fn advance_with_space<T: Real, G: Grains, const SPIN: bool>(
         match path {
             Path::Plain => with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, drag, dt),
             #[cfg(target_arch = "x86_64")]
-            Path::PlainFma => with_space_fma::<T, G, SPIN>(bodies, forces, first, grains, deformation, drag, dt),
+            Path::PlainFma => {
+                with_space_fma::<T, G, SPIN>(bodies, forces, first, grains, deformation, drag, dt)
+            }
             #[cfg(target_arch = "x86_64")]
             Path::Avx2 => with_space_avx2::<T, G, SPIN>(bodies, forces, first, grains, deformation, drag, dt),
         }
