@@ -6,7 +6,7 @@ use crate::lane::Real;
 use crate::state::{Body, Force, Grains};
 
 /// Rates of drag by slot.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum DragRates<'a> {
     /// None.
     None,
@@ -137,11 +137,13 @@ fn free<T: Real, G: Grains, const SPIN: bool>(
 
 /// What a deforming space does to its particles in one step.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Deformation {
+pub struct Deformation<'a> {
     /// Strain rates at t_n + dt/2 [1/τ].
     pub rate: [f64; 3],
     /// Coefficient c of the local damping: every component of force and torque counts 1 − c sign(F v) [1].
     pub local_damping: f64,
+    /// Drag on velocities relative to the deformation, and on spins.
+    pub drag: DragRates<'a>,
 }
 
 /// As [`advance`], in a space that deforms: x(t+dt) = x + dt (v + e x), v relative to the deformation.
@@ -154,20 +156,17 @@ pub unsafe fn advance_with_space<T: Real, G: Grains, const SPIN: bool>(
     forces: &mut [Force<T>],
     first: usize,
     grains: &G,
-    deformation: Deformation,
-    drag: DragRates<'_>,
+    deformation: Deformation<'_>,
     dt: f64,
 ) -> f64 {
     // SAFETY: the path was detected.
     unsafe {
         match path {
-            Path::Plain => with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, drag, dt),
+            Path::Plain => with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt),
             #[cfg(target_arch = "x86_64")]
-            Path::PlainFma => {
-                with_space_fma::<T, G, SPIN>(bodies, forces, first, grains, deformation, drag, dt)
-            }
+            Path::PlainFma => with_space_fma::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt),
             #[cfg(target_arch = "x86_64")]
-            Path::Avx2 => with_space_avx2::<T, G, SPIN>(bodies, forces, first, grains, deformation, drag, dt),
+            Path::Avx2 => with_space_avx2::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt),
         }
     }
 }
@@ -179,11 +178,10 @@ fn with_space_fma<T: Real, G: Grains, const SPIN: bool>(
     forces: &mut [Force<T>],
     first: usize,
     grains: &G,
-    deformation: Deformation,
-    drag: DragRates<'_>,
+    deformation: Deformation<'_>,
     dt: f64,
 ) -> f64 {
-    with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, drag, dt)
+    with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt)
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -193,11 +191,10 @@ fn with_space_avx2<T: Real, G: Grains, const SPIN: bool>(
     forces: &mut [Force<T>],
     first: usize,
     grains: &G,
-    deformation: Deformation,
-    drag: DragRates<'_>,
+    deformation: Deformation<'_>,
     dt: f64,
 ) -> f64 {
-    with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, drag, dt)
+    with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt)
 }
 
 #[inline(always)]
@@ -206,11 +203,10 @@ fn with_space<T: Real, G: Grains, const SPIN: bool>(
     forces: &mut [Force<T>],
     first: usize,
     grains: &G,
-    deformation: Deformation,
-    drag: DragRates<'_>,
+    deformation: Deformation<'_>,
     dt: f64,
 ) -> f64 {
-    let (rate, strength) = (deformation.rate, deformation.local_damping);
+    let Deformation { rate, local_damping: strength, drag } = deformation;
     let damped = |force: T, velocity: T| {
         let (force, velocity): (f64, f64) = (force.into(), velocity.into());
         let power = force * velocity;

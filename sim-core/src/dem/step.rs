@@ -137,7 +137,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             let (grains, drag, dt) = (&shared.grains, shared.drag_rates(), shared.dt);
             let rush = if B::DEFORMS {
                 let rate = shared.boundary.next_rate(shared.virial(), dt);
-                let deformation = Deformation { rate, local_damping: shared.boundary.local_damping() };
+                let local_damping = shared.boundary.local_damping();
+                let deformation = Deformation { rate, local_damping, drag };
                 if C::NEEDS_SPIN {
                     advance_with_space::<S::Real, G, true>(
                         shared.path,
@@ -146,7 +147,6 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                         start,
                         grains,
                         deformation,
-                        drag,
                         dt,
                     )
                 } else {
@@ -157,7 +157,6 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                         start,
                         grains,
                         deformation,
-                        drag,
                         dt,
                     )
                 }
