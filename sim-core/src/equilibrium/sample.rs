@@ -44,6 +44,8 @@ pub(crate) struct Sample {
     pub(crate) wall_forces: [f64; 6],
     /// Loads p S on the walls [k_n d].
     pub(crate) wall_loads: [f64; 6],
+    /// Velocities of the walls along their axes [d/τ].
+    pub(crate) wall_velocities: [f64; 6],
 }
 
 impl Sample {
@@ -66,6 +68,7 @@ impl Sample {
             unbalanced: unbalanced(view, &counted),
             wall_forces: [0, 1, 2, 3, 4, 5].map(|wall| view.walls[wall].force),
             wall_loads: [0, 1, 2, 3, 4, 5].map(|wall| view.walls[wall].load),
+            wall_velocities: [0, 1, 2, 3, 4, 5].map(|wall| view.walls[wall].velocity),
         }
     }
 }

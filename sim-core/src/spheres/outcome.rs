@@ -75,7 +75,7 @@ fn state_columns(
     let phi = 1.0 / (1.0 + e);
     let scatter = estimate::e_scatter(scene);
     let drift =
-        evidence(&memory.samples, start::moving(scene)).e_drift.unwrap_or(0.0) * estimate::DRIFT_TO_REST;
+        evidence(&memory.samples, start::driven(scene)).e_drift.unwrap_or(0.0) * estimate::DRIFT_TO_REST;
     let e_se = (scatter * scatter + drift * drift).sqrt();
     record
         .number("e", e)?
@@ -160,7 +160,7 @@ fn force_columns(record: &mut Row, scene: &ReducedSpheres, view: &View) -> Resul
 
 /// The status and the numbers that justify it.
 fn evidence_columns(record: &mut Row, scene: &ReducedSpheres, memory: &Memory) -> Result<(), NotFinite> {
-    let found: Evidence = evidence(&memory.samples, start::moving(scene));
+    let found: Evidence = evidence(&memory.samples, start::driven(scene));
     let (_, fired) = judge(&scene.stop, &found);
     let status = match memory.phase {
         Phase::Finished(status) => status.name(),

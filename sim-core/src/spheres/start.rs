@@ -5,6 +5,7 @@ use scene::spheres::{Approach, DampingMass, ReducedSpheres};
 
 use super::system;
 use crate::dem::{InitialState, SphereParameters, View, largest_step};
+use crate::equilibrium::evidence::Driven;
 use crate::packing::spheres::{self as packing, Request};
 use crate::{Explanation, Options, Saving, SimError, Skip};
 
@@ -42,6 +43,11 @@ pub(crate) fn parameters(scene: &ReducedSpheres) -> SphereParameters {
 pub(crate) fn moving(scene: &ReducedSpheres) -> [bool; 6] {
     let low = scene.moving_walls == 6;
     [low, true, low, true, low, true]
+}
+
+/// The driven walls, as the stop rule sees them.
+pub(crate) fn driven(scene: &ReducedSpheres) -> Driven {
+    Driven { moving: moving(scene), mass: scene.wall_mass }
 }
 
 /// The largest time step of a run and why [τ].

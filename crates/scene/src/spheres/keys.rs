@@ -23,7 +23,7 @@ const WALL_IMBALANCE: Key = Key {
     unit: "1",
     domain: Domain::Real(Bound::Excluding(0.0), Bound::Including(1.0)),
     absent: Absent::Default("0.01"),
-    meaning: "largest relative deviation of a wall force from p S",
+    meaning: "largest relative deviation of a wall force from p S, in the mean over the last fifth of the time",
     source: OURS,
 };
 
