@@ -1,7 +1,7 @@
 //! What a small compaction must look like.
 
 use serde_json::json;
-use sim_core::Options;
+use sim_core::{Options, compile};
 
 use crate::support::{run, scene};
 
@@ -28,6 +28,33 @@ fn a_small_compaction_settles_where_it_should() {
         assert!(outcome.packing.0[table].rows() > 0, "{table}");
     }
     assert_eq!(outcome.packing.0["contacts"].rows() as f64, real("contacts"));
+}
+
+/// What the stop rule takes the balance of the walls from: m_w Δv is the sum of the net forces of all steps, by the
+/// trapezium rule of the integrator.
+#[test]
+fn the_momentum_of_a_wall_is_the_sum_of_its_forces() {
+    let mut simulation =
+        compile(&scene(&json!({ "stop": { "rule": "steps" } })), &Options::default()).unwrap();
+    simulation.advance(2500).unwrap();
+    let states: Vec<_> = (0..=200)
+        .map(|_| {
+            let outcome = simulation.outcome().unwrap();
+            simulation.advance(1).unwrap();
+            outcome
+        })
+        .collect();
+    let real = |k: usize, name: &str| states[k].record.real(name).unwrap();
+    let wall = |k: usize, name: &str| states[k].packing.0["walls"].column(name).unwrap();
+    let (mass, dt) = (real(0, "wall_mass"), real(0, "dt"));
+    for side in 0..6 {
+        let net = |k: usize| wall(k, "force")[side] - wall(k, "load")[side];
+        let steps: Vec<f64> = (0..200).map(|k| 0.5 * (net(k) + net(k + 1)) * dt).collect();
+        let outwards = if side % 2 == 0 { -1.0 } else { 1.0 };
+        let gained = outwards * mass * (wall(200, "velocity")[side] - wall(0, "velocity")[side]);
+        let size: f64 = steps.iter().map(|step| step.abs()).sum();
+        assert!((gained - steps.iter().sum::<f64>()).abs() < 1e-11 * size, "wall {side}");
+    }
 }
 
 #[test]
