@@ -429,15 +429,20 @@ def precision():
 def weak_damping(reference, mixed):
     """The scene that was watched, by seeds before and after the suspicion."""
     scene = next(s for s in reference if s[3] == 0.02)
-    say("α_n = 0.02, mixed − double: seeds 1 to 16 raised the suspicion that mixed runs end sooner, seeds 17 to 80 test it. Unpaired: error of the "
-        "difference of two means.")
+    say("α_n = 0.02, mixed − double: seeds 1 to 16 raised the suspicion that mixed runs end sooner, seeds 17 to 80 test it; their e is tested by seeds 81 "
+        "to 144, which were run to settled e. Unpaired: error of the difference of two means.")
     rows = []
-    for text, seeds in [("1 to 16", range(1, 17)), ("17 to 80", range(17, 81)), ("1 to 80", range(1, 81))]:
-        both = [s for s in seeds if s in reference[scene] and s in mixed[scene]]
-        values = lambda runs, q: [runs[scene][s].get(q) for s in both]
-        rows.append([text, str(len(both)), "paired"] + [pm([difference(mixed[scene][s], reference[scene][s], q) for s in both], digits) for q, _, digits in COMPARED])
-        rows.append(["", "", "unpaired"] + [f"± {math.hypot(scatter(values(mixed, q)), scatter(values(reference, q))) / math.sqrt(len(both)):.{digits}f}"
-                                            for q, _, digits in COMPARED])
+    settled = [next(iter(compared(f"damping-{label}.csv").values())) for label in ("f64", "mixed")]
+    both_ends = reference[scene], mixed[scene]
+    together = [{**a, **b} for a, b in zip(both_ends, settled)]
+    for text, seeds, (a, b) in [("1 to 16", range(1, 17), both_ends), ("17 to 80", range(17, 81), both_ends), ("1 to 80", range(1, 81), both_ends),
+                                ("81 to 144, settled", range(81, 145), settled), ("all, e alone", range(1, 145), together)]:
+        both = [s for s in seeds if s in a and s in b]
+        shown = [c if c[0] in ("e", "e_core") or "alone" not in text else (None, "", 0) for c in COMPARED]
+        rows.append([text, str(len(both)), "paired"] + [pm([difference(b[s], a[s], q) for s in both], digits) if q else "" for q, _, digits in shown])
+        if len(both) <= 80:
+            errors = [math.hypot(scatter([b[s].get(q) for s in both]), scatter([a[s].get(q) for s in both])) / math.sqrt(len(both)) for q, _, _ in COMPARED]
+            rows.append(["", "", "unpaired"] + [f"± {error:.{digits}f}" for error, (_, _, digits) in zip(errors, COMPARED)])
     table(["seeds", "pairs", ""] + [f"Δ{label}" for _, label, _ in COMPARED], rows)
 
 
