@@ -123,7 +123,11 @@ print("\nTo `evidence`:\n")
 ends = {}
 left = [r | {"mark": "cut"} for r in read("longest-mixed.csv", "settled") if key(r) in by_walls]
 for rows in (left, read("longest-mixed.csv", "cut"), read("longest-4.csv", "cut"), read("evidence-3.csv", "end"), read("longest-mixed.csv", "evidence"), read("longest-4.csv", "end")):
-    ends |= {key(r): r for r in rows if key(r) in known and float(r["steps"]) > float(known[key(r)]["steps"])}
+    for r in rows:
+        # of two runs that were left, the longer
+        longer = r["mark"] != "cut" or float(r["steps"]) > max(float(f[key(r)]["steps"]) for f in (known, ends) if key(r) in f)
+        if key(r) in known and longer:
+            ends[key(r)] = r
 lines, factors = [], {}
 for k, r in sorted(ends.items(), key=lambda pair: float(pair[1]["steps"])):
     factors[k] = float(r["steps"]) / float(known[k]["steps"])
