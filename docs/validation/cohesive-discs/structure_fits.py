@@ -14,7 +14,7 @@ HERE = pathlib.Path(__file__).parent
 samples = collections.defaultdict(list)
 with open(HERE / "scattering.csv") as file:
     for row in csv.DictReader(file):
-        samples[float(row["mu_r"]), float(row["p"]), int(row["seed"])].append((float(row["k"]), float(row["intensity"])))
+        samples[int(row["n"]), float(row["mu_r"]), float(row["p"]), int(row["seed"])].append((float(row["k"]), float(row["intensity"])))
 
 
 def smooth(x):
@@ -51,7 +51,7 @@ def told(values):
     return f"{statistics.fmean(values):.2f} ± {statistics.stdev(values) / math.sqrt(len(values)):.2f}"
 
 
-print("| μ_R/a | P* | k below [1/a] | function | samples | d_F | ξ [a] | rms of ln I |\n|---|---|---|---|---|---|---|---|")
+print("| N | μ_R/a | P* | k below [1/a] | function | samples | d_F | ξ [a] | rms of ln I |\n|---|---|---|---|---|---|---|---|---|")
 def averaged(curves):
     """Shell by shell, in the order of k: the cells of the samples differ a little."""
     return [tuple(statistics.fmean(c) for c in zip(*shells)) for shells in zip(*curves)]
@@ -66,13 +66,13 @@ def jackknife(curves, shape):
     return [f"{whole[k]:.2f} ± {errors[k]:.2f}" for k in (1, 0, 2)]
 
 
-for mu_r, p in sorted({key[:2] for key in samples}):
+for n, mu_r, p in sorted({key[:3] for key in samples}):
     for largest in (2.0, math.pi, 4.5, 6.3):
         for shape in (smooth, broken):
-            curves = [[s for s in samples[key] if s[0] <= largest] for key in sorted(samples) if key[:2] == (mu_r, p)]
+            curves = [[s for s in samples[key] if s[0] <= largest] for key in sorted(samples) if key[:3] == (n, mu_r, p)]
             found = [fit(curve, shape) for curve in curves]
-            print(f"| {mu_r:g} | {p:g} | {largest:.2f} | {shape.__name__} | {len(found)} | {told([f[1] for f in found])} | "
+            print(f"| {n} | {mu_r:g} | {p:g} | {largest:.2f} | {shape.__name__} | {len(found)} | {told([f[1] for f in found])} | "
                   f"{told([f[0] for f in found])} | {told([f[2] for f in found])} |")
             if len(curves) > 2:
-                print(f"| {mu_r:g} | {p:g} | {largest:.2f} | {shape.__name__}, mean curve | {len(found)} | "
+                print(f"| {n} | {mu_r:g} | {p:g} | {largest:.2f} | {shape.__name__}, mean curve | {len(found)} | "
                       + " | ".join(jackknife(curves, shape)) + " |")

@@ -90,13 +90,13 @@ for mu_r in (0.0, 0.005, 0.5):
               f"{mean(r['pore_radius'] for r in here if 'pore_radius' in r)} |")
     print()
 
-print("## Table III: eq. (9), answers of /consolidation ± standard error; distance from the paper in standard errors\n")
-print("| μ_R/a | sweep | samples | P*0 | Φ at P*0 | λ | Φmax | α | P*1 | rms to the paper's curve, P* ≥ 0.05 |")
+print("## Table III: eq. (9), fits of the service ± standard error; distance from the paper in standard errors\n")
+print("| μ_R/a | stages | samples | P*0 | Φ at P*0 | λ | Φmax | α | P*1 | rms to the paper's curve, P* ≥ 0.05 |")
 print("|---|---|---|---|---|---|---|---|---|---|")
 PAPER_3 = {0.0: ((0.349, 0.019), (0.7808, 0), (0.91, 0.10), (0.271, 0.033)),
            0.005: ((0.194, 0.004), (0.7745, 0), (1.08, 0.16), (0.9, 0.064)),
            0.5: ((0.25, 0.01), (0.724, 0), (0.86, 0.24), (2.6, 0.4))}
-for fit in sorted(json.loads((HERE / "fits.json").read_text()), key=lambda f: (f["mu_r"], f["sweep"])):
+for fit in sorted(json.loads((HERE / "fits.json").read_text()), key=lambda f: f["mu_r"]):
     cells = []
     for name, (value, error) in zip(("lambda", "phi_max", "alpha", "p_star_1"), PAPER_3[fit["mu_r"]]):
         ours, own = fit[name]
@@ -104,7 +104,7 @@ for fit in sorted(json.loads((HERE / "fits.json").read_text()), key=lambda f: (f
     p0 = fit["p_star_0"]
     table = consolidation(p0, *TABLE_3[fit["mu_r"]])
     start = f"{fit['phi_0'][0]:.3f} ± {fit['phi_0'][1]:.3f} (Table III there: {table:.3f})"
-    print(f"| {fit['mu_r']:g} | {fit['sweep']}, {fit['method'].replace('_', '-')} | {fit['samples']} | {p0:.3g} | {start} | "
+    print(f"| {fit['mu_r']:g} | {fit['method'].replace('_', '-')} | {fit['samples']} | {p0:.3g} | {start} | "
           + " | ".join(cells) + f" | {fit['rms_to_paper']:.3f} |")
 
 print("\n## Contacts from P* = 0.178 to 0.237 (Table IV)\n")
