@@ -70,7 +70,8 @@ impl Model {
             // 3, spheres: `evidence` asks for the motion that deforms the network and for the trend of Z±; what carries no
             // load is not settled.
             Self::CohesiveDiscs => 3,
-            // 4: the balance of the walls is that of their momentum, not of samples of the force on them.
+            // 4: the balance of the walls is that of their momentum, not of samples of the force on them; how a contact turns
+            // and slips in another order of operations (differs by rounding).
             Self::CohesiveSpheres => 4,
             // 2: over-relaxed contact sweeps, a step begins with the last halving.
             // 3: iterates are accelerated, factors renewed by body; splines see their gradients in the mean over what a

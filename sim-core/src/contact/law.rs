@@ -74,16 +74,16 @@ pub trait ContactLaw<S: Space>: Copy + Send + Sync + 'static {
         dt: L,
         memory: *mut L::Scalar,
     ) -> (Response<S, L>, L::Mask);
-    /// Cuts the tangential force of a contact and its memory back to the bound, where it exceeds it.
+    /// Cuts the tangential memory of a contact back to the bound, where its force exceeds it.
     ///
     /// # Safety
     /// As for [`ContactLaw::stretch`].
-    unsafe fn limit<L: Lane>(
-        &self,
-        overlap: L,
-        tangential: S::Shear<L>,
-        memory: *mut L::Scalar,
-    ) -> S::Shear<L>;
+    unsafe fn limit<L: Lane>(&self, overlap: L, memory: *mut L::Scalar);
+    /// The tangential force that a [`ContactLaw::BOUNDED`] law remembers.
+    ///
+    /// # Safety
+    /// As for [`ContactLaw::stretch`].
+    unsafe fn held<L: Lane>(&self, memory: *const L::Scalar) -> S::Shear<L>;
     /// Its forces, updating its memory.
     ///
     /// # Safety
@@ -101,7 +101,8 @@ pub trait ContactLaw<S: Space>: Copy + Send + Sync + 'static {
         unsafe {
             let (mut response, sliding) = self.stretch(geometry, encounter, spin_difference, dt, memory);
             if Self::BOUNDED && L::any(sliding) {
-                response.tangential = self.limit(geometry.overlap, response.tangential, memory);
+                self.limit(geometry.overlap, memory);
+                response.tangential = self.held(memory);
             }
             response
         }
@@ -169,14 +170,20 @@ where
 
         let overlap = geometry.overlap;
         let share = L::splat(1.0).keep(L::splat(0.0).less(overlap));
-        let share = if D::JUMPS || A::JUMPS { share_of_step(overlap, approach, dt, share) } else { share };
+        let share =
+            if D::JUMPS || A::JUMPS { share_of_step(overlap, approach, half_dt, share) } else { share };
 
         let slide = if T::NEEDS_SPIN {
             // Lever arms reach the middle of the overlap: R − ov/2, with the overlap of t_n − dt/2.
-            let quarter = half.mul(half_dt.neg_mul_add(approach, overlap));
             let rim = match motion.rim {
-                None => motion.spin_sum.scale(geometry.radius_a.sub(quarter)),
-                Some(rim) => rim.sub_scaled(quarter, motion.spin_sum),
+                None => {
+                    let arm = half.neg_mul_add(overlap, geometry.radius_a);
+                    motion.spin_sum.scale(half.mul(half_dt).mul_add(approach, arm))
+                }
+                Some(rim) => {
+                    let quarter = half.mul(half_dt.neg_mul_add(approach, overlap));
+                    rim.sub_scaled(quarter, motion.spin_sum)
+                }
             };
             let spin_sum = motion.spin_sum;
             let passing = Passing { normal, velocity, approach, across, spin_sum, half_dt, dt };
@@ -240,20 +247,17 @@ where
     }
 
     #[inline(always)]
-    unsafe fn limit<L: Lane>(
-        &self,
-        overlap: L,
-        tangential: S::Shear<L>,
-        memory: *mut L::Scalar,
-    ) -> S::Shear<L> {
+    unsafe fn limit<L: Lane>(&self, overlap: L, memory: *mut L::Scalar) {
         // SAFETY: the caller vouches for the slots.
         unsafe {
-            self.tangential.limit(
-                tangential,
-                self.normal.elastic(overlap),
-                memory.add(D::SLOTS * L::Scalar::GROUP),
-            )
+            self.tangential.limit(self.normal.elastic(overlap), memory.add(D::SLOTS * L::Scalar::GROUP));
         }
+    }
+
+    #[inline(always)]
+    unsafe fn held<L: Lane>(&self, memory: *const L::Scalar) -> S::Shear<L> {
+        // SAFETY: the caller vouches for the slots.
+        unsafe { self.tangential.held(memory.add(D::SLOTS * L::Scalar::GROUP)) }
     }
 
     fn reverses(slot: usize) -> bool {
@@ -294,10 +298,11 @@ where
 /// sign, s = 1/2 + ov/(|u| dt), restores the second order (tests: restitution against the exact solution).
 /// `whole` is 1 for a closed contact and 0 for an open one.
 #[inline(always)]
-fn share_of_step<L: Lane>(overlap: L, approach: L, dt: L, whole: L) -> L {
-    let travel = approach.abs().mul(dt);
-    let crossing = overlap.abs().less(L::splat(0.5).mul(travel));
+fn share_of_step<L: Lane>(overlap: L, approach: L, half_dt: L, whole: L) -> L {
+    let half_travel = approach.abs().mul(half_dt);
+    let crossing = overlap.abs().less(half_travel);
     if L::any(crossing) {
+        let travel = half_travel.add(half_travel);
         let part = overlap.div(travel).add(L::splat(0.5)).max(L::splat(0.0)).min(L::splat(1.0));
         L::select(crossing, part, whole)
     } else {

@@ -9,7 +9,7 @@ pub use frictionless::Frictionless;
 pub use planar_spring::PlanarSpring;
 
 use crate::lane::Lane;
-use crate::space::Space;
+use crate::space::{Space, Vector};
 
 /// A tangential law.
 pub trait Tangential<S: Space>: Copy + Send + Sync + 'static {
@@ -39,14 +39,21 @@ pub trait Tangential<S: Space>: Copy + Send + Sync + 'static {
         dt: L,
         memory: *mut L::Scalar,
     ) -> (S::Shear<L>, L::Mask);
-    /// Cuts a force that came from [`Tangential::stretch`] back to its bound where it exceeds it, and its memory; all
-    /// else stays to the last bit.
+    /// Cuts what a [`Tangential::BOUNDED`] law remembers back to its bound where the force exceeds it; all else stays to
+    /// the last bit.
     ///
     /// # Safety
     /// As for [`Tangential::stretch`].
     #[inline(always)]
-    unsafe fn limit<L: Lane>(&self, force: S::Shear<L>, _elastic: L, _memory: *mut L::Scalar) -> S::Shear<L> {
-        force
+    unsafe fn limit<L: Lane>(&self, _elastic: L, _memory: *mut L::Scalar) {}
+    /// The tangential force of what a [`Tangential::BOUNDED`] law remembers: that of [`Tangential::stretch`] until
+    /// [`Tangential::limit`].
+    ///
+    /// # Safety
+    /// As for [`Tangential::stretch`].
+    #[inline(always)]
+    unsafe fn held<L: Lane>(&self, _memory: *const L::Scalar) -> S::Shear<L> {
+        S::Shear::zero()
     }
     /// k_t, for the time step [k_n].
     fn stiffness(&self) -> f64;

@@ -219,14 +219,15 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             for &k in sliding.get_unchecked(..slides) {
                 let meeting = (*meetings.add(k)).assume_init_ref();
                 let memory = memory.add((first + k) * C::SLOTS * group_of);
-                self.limit::<L>(meeting, (*pressed.add(k)).assume_init_mut(), memory);
+                self.limit::<L>(meeting, memory);
             }
             k = 0;
             while k < count {
                 let (meeting, pressed) =
                     ((*meetings.add(k)).assume_init_ref(), (*pressed.add(k)).assume_init_ref());
-                let contact =
-                    self.resolve::<L>(meeting, pressed, constants::<G, S::Real>(rows, first + k, 0));
+                let memory = memory.add((first + k) * C::SLOTS * group_of);
+                let constants = constants::<G, S::Real>(rows, first + k, 0);
+                let contact = self.resolve::<L>(meeting, pressed, memory, constants);
                 self.apply_group::<L>(indices, targets, first + k, &contact, &mut virial);
                 k += 1;
             }
@@ -285,25 +286,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
 
         if let Some(walls) = self.walls {
             for wall in 0..6 {
-                let list = &mut chunk.walls[wall];
-                let mut sum = 0.0_f64;
-                let groups = if L::WIDTH == group_of { list.count / group_of } else { 0 };
-                for group in 0..groups {
-                    let mut normal = [S::Real::default(); WIDEST];
-                    // SAFETY: the group is full.
-                    unsafe {
-                        let contact = self.wall_contact::<L>(walls, wall, list, group, 0);
-                        contact.store(normal.as_mut_ptr());
-                    }
-                    for &part in &normal[..L::WIDTH] {
-                        sum += part.into();
-                    }
-                }
-                for k in groups * group_of..list.count {
-                    let (group, lane) = (k / group_of, k % group_of);
-                    // SAFETY: contact k is in the list.
-                    sum += unsafe { self.wall_contact::<S::Real>(walls, wall, list, group, lane) }.into();
-                }
+                // SAFETY: the list holds valid indices of this chunk.
+                let sum = unsafe { self.wall_contacts::<L>(walls, wall, &mut chunk.walls[wall]) };
                 chunk.wall_force[wall] = sum;
             }
         }

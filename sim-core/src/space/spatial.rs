@@ -15,23 +15,15 @@ pub struct Spatial<R = f64>(PhantomData<R>);
 pub struct SpatialSlide<L: Lane> {
     /// Velocity of the contact point of b minus that of a, without its normal part [d/τ].
     pub slip: V3<L>,
-    /// dn/dt: rate at which the normal turns [1/τ].
-    pub normal_rate: V3<L>,
+    /// n − (dt/2) dn/dt: the normal of that time [1].
+    pub normal_between: V3<L>,
     /// (ω·n) dt with the mean spin of the two bodies: angle by which the contact turns about its normal [1].
     pub turn: L,
 }
 
-/// Turns a tangential vector about the contact normal by an angle, exact to second order.
-#[inline(always)]
-pub fn twist<L: Lane>(tangent: V3<L>, normal: V3<L>, angle: L) -> V3<L> {
-    // t + θ n × t − θ²/2 t
-    let turned = tangent.add_scaled(angle, cross(normal, tangent));
-    turned.sub_scaled(angle.mul(angle).mul(L::splat(0.5)), tangent)
-}
-
 /// a × b.
 #[inline(always)]
-fn cross<L: Lane>(a: V3<L>, b: V3<L>) -> V3<L> {
+pub fn cross<L: Lane>(a: V3<L>, b: V3<L>) -> V3<L> {
     let ([ax, ay, az], [bx, by, bz]) = (a.0, b.0);
     V3([az.neg_mul_add(by, ay.mul(bz)), ax.neg_mul_add(bz, az.mul(bx)), ay.neg_mul_add(bx, ax.mul(by))])
 }
@@ -52,7 +44,7 @@ impl<R: Real> Space for Spatial<R> {
     const DIMENSION: usize = 3;
     type Vector<L: Lane> = V3<L>;
     type Spin<L: Lane> = V3<L>;
-    /// dn/dt [1/τ].
+    /// n − (dt/2) dn/dt [1].
     type Across<L: Lane> = V3<L>;
     type Slide<L: Lane> = SpatialSlide<L>;
     type Shear<L: Lane> = V3<L>;
@@ -74,20 +66,24 @@ impl<R: Real> Space for Spatial<R> {
         spin.0
     }
 
+    /// With c = −v·n: dn/dt = (v + c n)/d, so u = c + (dt/2) (v² − c²)/d and n − (dt/2) dn/dt = (1 − c dt/2d) n − (dt/2d) v. v²
+    /// beside c, not what is left of v without c n: the way from positions to forces is what a step waits for.
     #[inline(always)]
     fn approach<L: Lane>(normal: V3<L>, velocity: V3<L>, inverse_distance: L, half_dt: L) -> (L, V3<L>) {
-        let opening = velocity.dot(normal);
-        let across = velocity.sub_scaled(opening, normal);
-        let normal_rate = across.scale(inverse_distance);
-        (half_dt.mul(across.dot(normal_rate)).sub(opening), normal_rate)
+        let zero = L::splat(0.0);
+        let share = inverse_distance.mul(zero.sub(half_dt));
+        let ([nx, ny, nz], [vx, vy, vz]) = (normal.0, velocity.0);
+        let closing = vz.neg_mul_add(nz, vy.neg_mul_add(ny, vx.neg_mul_add(nx, zero)));
+        let square_across = closing.neg_mul_add(closing, velocity.dot(velocity));
+        let along = share.mul_add(closing, L::splat(1.0));
+        let normal_between = velocity.scale(share).add_scaled(along, normal);
+        (share.neg_mul_add(square_across, closing), normal_between)
     }
     #[inline(always)]
     fn slide<L: Lane>(passing: &Passing<Self, L>, rim: V3<L>) -> SpatialSlide<L> {
-        let Passing { normal, velocity, approach, across: normal_rate, spin_sum, half_dt, .. } = *passing;
-        let normal_between = normal.sub_scaled(half_dt, normal_rate);
-        let slip = velocity.add_scaled(approach, normal_between);
-        let slip = sub_cross(slip, rim, normal_between);
-        SpatialSlide { slip, normal_rate, turn: spin_sum.dot(normal).mul(half_dt) }
+        let Passing { normal, velocity, approach, across: normal_between, spin_sum, half_dt, .. } = *passing;
+        let slip = sub_cross(velocity.add_scaled(approach, normal_between), rim, normal_between);
+        SpatialSlide { slip, normal_between, turn: spin_sum.dot(normal).mul(half_dt) }
     }
     #[inline(always)]
     fn contact_force<L: Lane>(normal: V3<L>, push: L, shear: V3<L>) -> V3<L> {

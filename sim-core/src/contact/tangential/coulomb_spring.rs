@@ -7,7 +7,7 @@
 
 use super::Tangential;
 use crate::lane::{Lane, Real};
-use crate::space::{Spatial, SpatialSlide, V3, Vector, twist};
+use crate::space::{Spatial, SpatialSlide, V3, Vector, cross};
 
 /// Spring k_t, limit μ f_e.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,11 +19,11 @@ pub struct CoulombSpring {
 }
 
 impl CoulombSpring {
-    /// Where a tangential force exceeds μ f_e.
+    /// Where the force of a spring exceeds μ f_e.
     #[inline(always)]
-    fn slides<L: Lane>(&self, force: V3<L>, elastic: L) -> L::Mask {
+    fn slides<L: Lane>(&self, spring: V3<L>, elastic: L) -> L::Mask {
         let bound = L::splat(self.mu).mul(elastic);
-        bound.mul(bound).less(force.dot(force))
+        bound.mul(bound).less(L::splat(self.kt * self.kt).mul(spring.dot(spring)))
     }
 }
 
@@ -46,31 +46,39 @@ impl<R: Real> Tangential<Spatial<R>> for CoulombSpring {
     ) -> (V3<L>, L::Mask) {
         // SAFETY: the caller vouches for the slots.
         let old: V3<L> = unsafe { V3::load(memory) };
-        let turned = twist(old, normal, slide.turn);
+        // Turned about the normal by θ, exact to second order: (1 − θ²/2) ξ + θ n × ξ, and grown by the slip.
+        let (turn, one) = (slide.turn, L::splat(1.0));
+        let cosine = L::splat(0.5).mul(turn).neg_mul_add(turn, one);
+        let turned = old.scale(cosine).add_scaled(turn, cross(normal, old));
         let grown = turned.add_scaled(dt, slide.slip);
-        // The normal turned by dn: ξ loses its part along the new normal and gains half of it along dn.
-        let along = grown.dot(normal);
-        let half_turn = along.mul(dt.mul(L::splat(0.5)));
-        let spring = grown.sub_scaled(along, normal).add_scaled(half_turn, slide.normal_rate);
+        // The normal turned by dn: ξ loses its part along the new normal and gains half of it along dn, together its part
+        // along the normal times the normal between the two. That part is worked out beside `grown`, not after it.
+        let along = cosine.mul_add(old.dot(normal), dt.mul(slide.slip.dot(normal)));
+        let spring = grown.sub_scaled(along, slide.normal_between);
         // An open contact has no spring, so it cannot slide either.
         let spring = spring.keep(active);
         // SAFETY: as above.
         unsafe { spring.store(memory) };
-        let force = spring.scale(L::splat(self.kt));
-        (force, self.slides(force, elastic))
+        (spring.scale(L::splat(self.kt)), self.slides(spring, elastic))
     }
 
     #[inline(always)]
-    unsafe fn limit<L: Lane>(&self, force: V3<L>, elastic: L, memory: *mut L::Scalar) -> V3<L> {
-        let bound = L::splat(self.mu).mul(elastic);
-        let length = force.dot(force).sqrt();
-        let shrink = L::select(self.slides(force, elastic), bound.div(length), L::splat(1.0));
+    unsafe fn limit<L: Lane>(&self, elastic: L, memory: *mut L::Scalar) {
         // SAFETY: the caller vouches for the slots.
         unsafe {
             let spring: V3<L> = V3::load(memory);
+            let bound = L::splat(self.mu).mul(elastic);
+            let force = L::splat(self.kt).mul(spring.dot(spring).sqrt());
+            let shrink = L::select(self.slides(spring, elastic), bound.div(force), L::splat(1.0));
             spring.scale(shrink).store(memory);
         }
-        force.scale(shrink)
+    }
+
+    #[inline(always)]
+    unsafe fn held<L: Lane>(&self, memory: *const L::Scalar) -> V3<L> {
+        // SAFETY: the caller vouches for the slots.
+        let spring: V3<L> = unsafe { V3::load(memory) };
+        spring.scale(L::splat(self.kt))
     }
 
     fn stiffness(&self) -> f64 {

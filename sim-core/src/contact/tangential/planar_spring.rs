@@ -73,7 +73,11 @@ mod tests {
         // SAFETY: the caller vouches.
         unsafe {
             let (force, sliding) = law.stretch::<f64>(normal, slide, elastic, elastic > 0.0, dt, memory);
-            if T::BOUNDED && sliding { law.limit(force, elastic, memory) } else { force }
+            if !(T::BOUNDED && sliding) {
+                return force;
+            }
+            law.limit(elastic, memory);
+            law.held(memory)
         }
     }
 
@@ -91,7 +95,7 @@ mod tests {
             let (u, v) = (-libm::sin(middle), libm::cos(middle));
             let slide = SpatialSlide {
                 slip: V3([u * rate, v * rate, 0.0]),
-                normal_rate: V3([u * turn, v * turn, 0.0]),
+                normal_between: V3([x - 0.5 * dt * turn * u, y - 0.5 * dt * turn * v, 0.0]),
                 turn: 0.0,
             };
             // Slip along the tangent of t_n.

@@ -37,11 +37,10 @@ pub(super) struct Moving<S: Space, L: Lane> {
     slide: MaybeUninit<S::Slide<L>>,
 }
 
-/// What the springs of a bounded law say before the bound.
+/// What a bounded law says beside the tangential force, which is what it remembers.
 #[derive(Clone, Copy)]
 pub(super) struct Pressed<S: Space, L: Lane> {
     normal: L,
-    tangential: S::Shear<L>,
     /// Where contacts resist rolling.
     rolling: MaybeUninit<S::Spin<L>>,
 }
@@ -253,10 +252,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         let (geometry, motion) = unsafe { self.unfold(meeting, constants) };
         let encounter = Encounter { approach: moving.approach, share: moving.share, slide: moving.slide };
         // SAFETY: the caller vouches for the slots.
-        let (Response { normal, tangential, rolling, .. }, sliding) = unsafe {
+        let (Response { normal, rolling, .. }, sliding) = unsafe {
             self.law.stretch(&geometry, &encounter, motion.spin_difference, L::splat(self.dt), memory)
         };
-        let mut pressed = Pressed { normal, tangential, rolling: MaybeUninit::uninit() };
+        let mut pressed = Pressed { normal, rolling: MaybeUninit::uninit() };
         if C::ROLLS {
             pressed.rolling.write(rolling);
         }
@@ -266,34 +265,35 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// Fourth part, for groups with contacts that slide.
     ///
     /// # Safety
-    /// Meeting and pressed came from the parts before; `memory` points to the slots of these contacts.
+    /// The meeting came from [`Pass::meet`]; `memory` points to the slots of these contacts.
     #[inline(always)]
     pub(super) unsafe fn limit<L: Gather<Scalar = S::Real>>(
         &self,
         meeting: &Meeting<S, L>,
-        pressed: &mut Pressed<S, L>,
         memory: *mut S::Real,
     ) {
         // SAFETY: the caller vouches.
-        pressed.tangential = unsafe { self.law.limit(meeting.overlap, pressed.tangential, memory) };
+        unsafe { self.law.limit(meeting.overlap, memory) };
     }
 
     /// Last part of a bounded law: forces and torques.
     ///
     /// # Safety
-    /// Meeting and pressed came from the parts before with these constants.
+    /// Meeting and pressed came from the parts before with these constants; `memory` points to the slots of these
+    /// contacts.
     #[inline(always)]
     pub(super) unsafe fn resolve<L: Gather<Scalar = S::Real>>(
         &self,
         meeting: &Meeting<S, L>,
         pressed: &Pressed<S, L>,
+        memory: *const S::Real,
         constants: *const S::Real,
     ) -> Evaluated<S, L> {
         let zero = L::splat(0.0);
         // SAFETY: `press` wrote it where contacts resist rolling; the caller vouches for the rest.
         unsafe {
             let rolling = if C::ROLLS { pressed.rolling.assume_init() } else { S::Spin::zero() };
-            let Pressed { normal, tangential, .. } = *pressed;
+            let (normal, tangential) = (pressed.normal, self.law.held(memory));
             // The parts of the normal force are of no use to a force pass.
             let response =
                 Response { normal, elastic: zero, attraction: zero, viscous: zero, tangential, rolling };

@@ -1,12 +1,21 @@
-//! Contacts of particles with walls.
+//! Contacts of particles with walls, in two parts as those of pairs: how particles and wall move, what forces follow.
 
-use super::{Evaluated, Pass};
+use std::mem::MaybeUninit;
+
+use super::{BATCH, Evaluated, Pass};
 use crate::boundary::Boundary;
-use crate::contact::{ContactLaw, PairGeometry, PairMotion};
+use crate::contact::{ContactLaw, Encounter, PairGeometry, PairMotion};
 use crate::control::ServoWalls;
-use crate::lane::{Gather, Lane, Number};
+use crate::lane::{Gather, Lane, Number, WIDEST};
 use crate::space::{Space, Vector};
 use crate::state::{ContactList, Grains};
+
+/// How particles and a wall move against each other.
+struct Touching<S: Space, L: Lane> {
+    geometry: PairGeometry<S, L>,
+    encounter: Encounter<S, L>,
+    spin_difference: S::Spin<L>,
+}
 
 impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C> {
     /// Contacts with one wall (a particles; the wall has no index).
@@ -21,6 +30,21 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         a: *const u32,
         memory: *mut S::Real,
     ) -> Evaluated<S, L> {
+        // SAFETY: the caller vouches.
+        unsafe { self.push(&self.touch(walls, wall, a), memory) }
+    }
+
+    /// First part.
+    ///
+    /// # Safety
+    /// `a` points to `L::WIDTH` indices of bodies.
+    #[inline(always)]
+    unsafe fn touch<L: Gather<Scalar = S::Real>>(
+        &self,
+        walls: &ServoWalls,
+        wall: usize,
+        a: *const u32,
+    ) -> Touching<S, L> {
         let axis = ServoWalls::axis(wall);
         let outward = L::splat(ServoWalls::outward(wall));
         // SAFETY: the caller vouches for the indices; so throughout.
@@ -54,9 +78,28 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             motion.spin_sum = S::spin(unsafe { L::record::<2>(self.bodies, a) });
             motion.spin_difference = none.add_scaled(L::splat(-1.0), motion.spin_sum);
         }
-        // SAFETY: see above.
-        let response = unsafe { self.wall_law.evaluate(&geometry, &motion, L::splat(self.dt), memory) };
+        let spin_difference = motion.spin_difference;
+        let encounter = self.wall_law.encounter(&geometry, &motion, L::splat(self.dt));
+        Touching { geometry, encounter, spin_difference }
+    }
+
+    /// Second part.
+    ///
+    /// # Safety
+    /// `memory` points to the slots of these contacts.
+    #[inline(always)]
+    unsafe fn push<L: Gather<Scalar = S::Real>>(
+        &self,
+        touching: &Touching<S, L>,
+        memory: *mut S::Real,
+    ) -> Evaluated<S, L> {
+        let Touching { geometry, encounter, spin_difference } = touching;
+        // SAFETY: the caller vouches.
+        let response =
+            unsafe { self.wall_law.forces(geometry, encounter, *spin_difference, L::splat(self.dt), memory) };
+        let PairGeometry { normal, overlap, radius_a: radius, .. } = *geometry;
         let force = S::contact_force(normal, response.normal, response.tangential);
+        let none: S::Spin<L> = S::Spin::zero();
         let mut torque_a = none;
         if C::NEEDS_SPIN {
             let arm = L::splat(0.5).neg_mul_add(overlap, radius);
@@ -76,22 +119,73 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         }
     }
 
-    /// One group of contacts with a wall: adds to the particles, returns the normal forces.
+    /// All contacts of a list with a wall: adds to the particles, returns the sum of the normal forces.
+    ///
+    /// # Safety
+    /// The list holds valid indices and memory for its groups; the forces of its particles are writable and no other
+    /// thread touches them.
     #[inline(always)]
-    pub(super) unsafe fn wall_contact<L: Gather<Scalar = S::Real>>(
+    pub(super) unsafe fn wall_contacts<L: Gather<Scalar = S::Real>>(
         &self,
         walls: &ServoWalls,
         wall: usize,
         list: &mut ContactList<S::Real>,
-        group: usize,
-        lane: usize,
-    ) -> L {
+    ) -> f64 {
         let group_of = <S::Real as Number>::GROUP;
-        // SAFETY: the list holds valid indices of this chunk and memory for its groups.
+        let (indices, memory) = (list.indices.as_ptr(), list.memory.as_mut_ptr());
+        let groups = if L::WIDTH == group_of { list.count / group_of } else { 0 };
+        let mut touching = [const { MaybeUninit::<Touching<S, L>>::uninit() }; BATCH];
+        let touching = touching.as_mut_ptr();
+        let (mut sum, mut first) = (0.0_f64, 0);
+        while first < groups {
+            let count = if groups - first < BATCH { groups - first } else { BATCH };
+            // SAFETY: these groups are full; the buffer is written before it is read.
+            unsafe {
+                let mut k = 0;
+                while k < count {
+                    let a = indices.add((first + k) * 2 * group_of);
+                    touching.add(k).write(MaybeUninit::new(self.touch::<L>(walls, wall, a)));
+                    k += 1;
+                }
+                k = 0;
+                while k < count {
+                    let a = indices.add((first + k) * 2 * group_of);
+                    let memory = memory.add((first + k) * C::SLOTS * group_of);
+                    let normal = self.wall_group::<L>(a, memory, (*touching.add(k)).assume_init_ref());
+                    let mut lanes = [S::Real::default(); WIDEST];
+                    normal.store(lanes.as_mut_ptr());
+                    for &part in &lanes[..L::WIDTH] {
+                        sum += part.into();
+                    }
+                    k += 1;
+                }
+            }
+            first += count;
+        }
+        for k in groups * group_of..list.count {
+            let (group, lane) = (k / group_of, k % group_of);
+            // SAFETY: contact k is in the list.
+            unsafe {
+                let a = indices.add(group * 2 * group_of + lane);
+                let memory = memory.add(group * C::SLOTS * group_of + lane);
+                let touching = self.touch::<S::Real>(walls, wall, a);
+                sum += self.wall_group::<S::Real>(a, memory, &touching).into();
+            }
+        }
+        sum
+    }
+
+    /// One group of contacts with a wall: adds to the particles, returns the normal forces.
+    #[inline(always)]
+    unsafe fn wall_group<L: Gather<Scalar = S::Real>>(
+        &self,
+        a: *const u32,
+        memory: *mut S::Real,
+        touching: &Touching<S, L>,
+    ) -> L {
+        // SAFETY: the caller vouches for indices, memory and forces.
         unsafe {
-            let a = list.indices.as_ptr().add(group * 2 * group_of + lane);
-            let memory = list.memory.as_mut_ptr().add(group * C::SLOTS * group_of + lane);
-            let contact = self.wall::<L>(walls, wall, a, memory);
+            let contact = self.push::<L>(touching, memory);
             L::scatter::<0>(self.forces, a, S::vector_record(contact.force));
             if C::NEEDS_SPIN {
                 L::scatter::<1>(self.forces, a, S::spin_record(contact.torque_a));
