@@ -99,7 +99,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         let separation: S::Vector<L::Wide> = S::vector(unsafe { L::separation(self.bodies, a, b) });
         let separation = self.boundary.nearest(separation);
         let square = separation.dot(separation);
-        let apart: S::Vector<L> = S::vector(S::vector_record(separation).map(L::narrow));
+        // Written out, here and below: a closure that is not inlined into the caller with the features makes a call of
+        // every instruction.
+        let [x, y, z] = S::vector_record(separation);
+        let apart: S::Vector<L> = S::vector([L::narrow(x), L::narrow(y), L::narrow(z)]);
         // SAFETY: see above.
         let [radius_a, radius_b, _] = unsafe { self.grains.pair::<L>(constants) };
         let [overlap, inverse_distance] = L::meet(square, radius_a.widen().add(radius_b.widen()));
@@ -360,9 +363,11 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             unsafe { L::scatter_pair::<0, MINUS>(self.forces, a, forces_b, b_target, on_a, on_b) };
             let separation = S::vector_record(contact.separation);
             let shift = L::Wide::splat(VIRIAL_SHIFT);
-            return std::array::from_fn(|axis| {
-                force[axis].widen().neg_mul_add(separation[axis], shift).sub(shift)
-            });
+            let [x, y, _] = separation;
+            return [
+                force[0].widen().neg_mul_add(x, shift).sub(shift),
+                force[1].widen().neg_mul_add(y, shift).sub(shift),
+            ];
         }
         // SAFETY: see above.
         unsafe {
