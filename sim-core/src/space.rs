@@ -26,8 +26,6 @@ pub struct Passing<S: Space, L: Lane> {
     pub spin_sum: S::Spin<L>,
     /// dt/2 [τ].
     pub half_dt: L,
-    /// dt [τ].
-    pub dt: L,
 }
 
 /// Dimension, vectors and rotations. Records in memory always have three components; a planar system leaves the

@@ -107,22 +107,6 @@ pub trait ContactLaw<S: Space>: Copy + Send + Sync + 'static {
             response
         }
     }
-    /// Both in one.
-    ///
-    /// # Safety
-    /// As for [`ContactLaw::forces`].
-    #[inline(always)]
-    unsafe fn evaluate<L: Lane>(
-        &self,
-        geometry: &PairGeometry<S, L>,
-        motion: &PairMotion<S, L>,
-        dt: L,
-        memory: *mut L::Scalar,
-    ) -> Response<S, L> {
-        let encounter = self.encounter(geometry, motion, dt);
-        // SAFETY: the caller vouches for the slots.
-        unsafe { self.forces(geometry, &encounter, motion.spin_difference, dt, memory) }
-    }
     /// Memory of an open contact, slot by slot.
     fn vacant(slot: usize) -> f64;
     /// Whether a slot changes sign when the two bodies swap roles.
@@ -186,7 +170,7 @@ where
                 }
             };
             let spin_sum = motion.spin_sum;
-            let passing = Passing { normal, velocity, approach, across, spin_sum, half_dt, dt };
+            let passing = Passing { normal, velocity, approach, across, spin_sum, half_dt };
             MaybeUninit::new(S::slide(&passing, rim))
         } else {
             MaybeUninit::uninit()

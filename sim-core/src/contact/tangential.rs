@@ -45,7 +45,9 @@ pub trait Tangential<S: Space>: Copy + Send + Sync + 'static {
     /// # Safety
     /// As for [`Tangential::stretch`].
     #[inline(always)]
-    unsafe fn limit<L: Lane>(&self, _elastic: L, _memory: *mut L::Scalar) {}
+    unsafe fn limit<L: Lane>(&self, _elastic: L, _memory: *mut L::Scalar) {
+        const { assert!(!Self::BOUNDED, "a bounded law has a bound") }
+    }
     /// The tangential force of what a [`Tangential::BOUNDED`] law remembers: that of [`Tangential::stretch`] until
     /// [`Tangential::limit`].
     ///
@@ -53,6 +55,7 @@ pub trait Tangential<S: Space>: Copy + Send + Sync + 'static {
     /// As for [`Tangential::stretch`].
     #[inline(always)]
     unsafe fn held<L: Lane>(&self, _memory: *const L::Scalar) -> S::Shear<L> {
+        const { assert!(!Self::BOUNDED, "a bounded law remembers its force") }
         S::Shear::zero()
     }
     /// k_t, for the time step [k_n].

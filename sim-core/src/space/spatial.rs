@@ -81,7 +81,7 @@ impl<R: Real> Space for Spatial<R> {
     }
     #[inline(always)]
     fn slide<L: Lane>(passing: &Passing<Self, L>, rim: V3<L>) -> SpatialSlide<L> {
-        let Passing { normal, velocity, approach, across: normal_between, spin_sum, half_dt, .. } = *passing;
+        let Passing { normal, velocity, approach, across: normal_between, spin_sum, half_dt } = *passing;
         let slip = sub_cross(velocity.add_scaled(approach, normal_between), rim, normal_between);
         SpatialSlide { slip, normal_between, turn: spin_sum.dot(normal).mul(half_dt) }
     }

@@ -172,9 +172,11 @@ fn tangential_spring_turns_with_a_rigidly_rotating_pair() {
                         spin_sum: spin.scale(2.0),
                         spin_difference: V3([0.0; 3]),
                     };
+                    let encounter = law.encounter::<f64>(&geometry, &motion, dt);
+                    let still = motion.spin_difference;
                     // SAFETY: three slots for one lane.
                     let response =
-                        unsafe { law.evaluate::<f64>(&geometry, &motion, dt, memory.as_mut_ptr()) };
+                        unsafe { law.forces::<f64>(&geometry, &encounter, still, dt, memory.as_mut_ptr()) };
                     force = response.tangential.0;
                 }
                 let exact = turn(spring, axis, angle).map(|x| 1.5 * x);
