@@ -15,7 +15,7 @@ import sys
 
 HERE = pathlib.Path(__file__).parent
 COLUMNS = ["branch", "p", "phi", "z", "z_star", "rattler_share", "steps", "converged", "contacts_kept",
-           "contacts_lost", "contacts_gained", "correlation_length", "z_plus", "z_minus", "mean_normal_force", "time"]
+           "contacts_lost", "contacts_gained", "correlation_length", "z_plus", "z_minus", "mean_normal_force", "time", "x22"]
 if len(sys.argv) > 1:
     with open(HERE / "experiments.csv") as file:
         width = 2 + len(COLUMNS)

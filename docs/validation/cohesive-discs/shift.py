@@ -26,12 +26,23 @@ with open(HERE / "experiments.csv") as file:
     for row in csv.DictReader(file):
         if row["label"].startswith("r_") and row["branch"] == "compression":
             samples[row["label"], row["seed"]][float(row["p"])] = float(row["phi"])
-found = collections.defaultdict(list)
-for (label, _), curve in samples.items():
-    away = [phi - paper(p) for p, phi in curve.items() if LOW < p < HIGH]
-    if len(away) == 8:
-        found[label].append(statistics.fmean(away))
-print("| label | samples | mean of Φ − Table III |\n|---|---|---|")
-for label, values in sorted(found.items()):
+away = {}
+for key, curve in samples.items():
+    differences = [phi - paper(p) for p, phi in curve.items() if LOW < p < HIGH]
+    if len(differences) == 8:
+        away[key] = statistics.fmean(differences)
+
+
+def told(values):
+    if not values:
+        return "-"
     error = f" ± {statistics.stdev(values) / math.sqrt(len(values)):.4f}" if len(values) > 1 else ""
-    print(f"| {label} | {len(values)} | {statistics.fmean(values):+.4f}{error} |")
+    return f"{statistics.fmean(values):+.4f}{error}"
+
+
+print("| label | samples | mean of Φ − Table III | minus that of the default with the same seed |\n|---|---|---|---|")
+for label in sorted({key[0] for key in away}):
+    seeds = [seed for name, seed in away if name == label]
+    base = None if label.startswith("default") or label == "r_n400" else "default, N = " + ("5600" if "big" in label else "1400")
+    paired = [away[label, seed] - away[base, seed] for seed in seeds if (base, seed) in away]
+    print(f"| {label} | {len(seeds)} | {told([away[label, seed] for seed in seeds])} | {told(paired)} |")
