@@ -15,7 +15,8 @@ with open(HERE / "states.csv") as file:
 with open(HERE / "experiments.csv") as file:
     for row in csv.DictReader(file):
         if row["label"].startswith("l_v"):
-            curves[row["label"], row["seed"]].append(row)
+            label = "default" if row["label"] == "l_v9.5" else row["label"]
+            curves[label, row["seed"]].append(row)
 print("| label | samples | z at P* = 0, 0.178 | x22 at 0.178 [%] | steps | lost / (ΔΦ/Φ): mean, scatter, range | gained / (ΔΦ/Φ) |\n"
       "|---|---|---|---|---|---|---|")
 for label in sorted({key[0] for key in curves}):
