@@ -19,8 +19,8 @@ with open(HERE / "experiments.csv") as file:
             curves[label, row["seed"]].append(row)
 print("| label | samples | z at P* = 0, 0.178 | x22 at 0.178 [%] | steps | lost / (ΔΦ/Φ): mean, scatter, range | gained / (ΔΦ/Φ) |\n"
       "|---|---|---|---|---|---|---|")
-for label in sorted({key[0] for key in curves}):
-    own = [sorted(rows, key=lambda r: float(r["p"])) for key, rows in curves.items() if key[0] == label]
+for label in [*sorted({key[0] for key in curves}), "all"]:
+    own = [sorted(rows, key=lambda r: float(r["p"])) for key, rows in curves.items() if label in (key[0], "all")]
     lost, gained = [], []
     for rows in own:
         for before, row in zip(rows, rows[1:]):
