@@ -173,6 +173,11 @@ fn tangential_spring_turns_with_a_rigidly_rotating_pair() {
                         spin_difference: V3([0.0; 3]),
                     };
                     let encounter = law.encounter::<f64>(&geometry, &motion, dt);
+                    // Along its normal the pair does not move; with the chord of an angle θ for the velocity the
+                    // rate is at most d (1 − cos θ)²/2dt, where −v·n alone is d (1 − cos θ)/dt.
+                    let versine = 1.0 - libm::cos(omega * dt);
+                    let rate = encounter.approach.abs();
+                    assert!(rate < 0.98 * versine * versine / (2.0 * dt) + 1e-13, "axis {axis:?}: {rate}");
                     let still = motion.spin_difference;
                     // SAFETY: three slots for one lane.
                     let response =
