@@ -36,6 +36,9 @@ pub struct Dem<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
     /// Rates by slot when the drag differs between particles.
     pub(super) drag_by_slot: Vec<f64>,
     // Lists and scratch: none of it changes a bit of the trajectory.
+    /// Zero between steps. Where space deforms, of all particles: they move when all forces are known. Else of the largest chunk,
+    /// once for every thread: a chunk moves right after its forces, and a small buffer used anew for every chunk stays in a
+    /// cache that all the forces would be too large for.
     pub(super) forces: Vec<Force<S::Real>>,
     pub(super) chunks: Vec<Chunk<S::Real>>,
     pub(super) lists: Lists,
@@ -113,18 +116,21 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         let bounds = chunk_bounds(bodies.len());
         let chunks: Vec<Chunk<S::Real>> =
             bounds.windows(2).map(|bound| Chunk::new(bound[0], bound[1], C::SLOTS)).collect();
+        let threads = threads.clamp(1, chunks.len());
+        let largest = chunks.iter().map(|chunk| chunk.end - chunk.start).max().unwrap_or(0);
+        let forces = if B::DEFORMS { bodies.len() } else { threads * largest };
         Self {
             law,
             wall_law,
             path,
-            threads: threads.clamp(1, chunks.len()),
+            threads,
             grains,
             boundary,
             walls,
             step: 0,
             dt,
             time: 0.0,
-            forces: vec![Force::default(); bodies.len()],
+            forces: vec![Force::default(); forces],
             original,
             bodies,
             drag: Drag::None,
@@ -158,6 +164,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             dt: self.dt,
             space: PhantomData,
         }
+    }
+
+    /// Where the forces of the particles of a chunk are while a thread works on it.
+    pub(super) fn forces_of(&self, chunk: usize, thread: usize) -> *mut Force<S::Real> {
+        let first = if B::DEFORMS { self.chunks[chunk].start } else { self.forces.len() / self.threads * thread };
+        self.forces.as_ptr().cast_mut().wrapping_add(first)
     }
 
     pub(super) fn drag_rates(&self) -> DragRates<'_> {

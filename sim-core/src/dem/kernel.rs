@@ -32,7 +32,7 @@ pub struct Pass<'a, S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
     pub walls: Option<&'a ServoWalls>,
     /// All bodies.
     pub bodies: *const Body<S::Real>,
-    /// All forces; a chunk writes those of its own particles alone.
+    /// Where the force of particle 0 is or would be: only those of the chunk at work need be there.
     pub forces: *mut Force<S::Real>,
     /// Time step [τ].
     pub dt: f64,

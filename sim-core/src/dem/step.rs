@@ -70,18 +70,18 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             let chunks = (*dem).chunks.len();
             let mine = crew.share(thread, chunks);
             for chunk in mine.clone() {
-                Self::force_phase(dem, chunk);
+                Self::force_phase(dem, chunk, thread);
                 crew.report(chunk, round);
                 if !B::DEFORMS {
                     crew.await_chunks(0..chunk, round);
-                    Self::motion_phase(dem, chunk);
+                    Self::motion_phase(dem, chunk, thread);
                 }
             }
             if B::DEFORMS {
                 // A deforming space moves by the virial of all chunks.
                 crew.await_chunks(0..chunks, round);
                 for chunk in mine {
-                    Self::motion_phase(dem, chunk);
+                    Self::motion_phase(dem, chunk, thread);
                 }
             }
             crew.meet(|| {
@@ -100,12 +100,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     ///
     /// # Safety
     /// No other thread works on this chunk; nobody moves bodies, walls or lists meanwhile.
-    unsafe fn force_phase(dem: *mut Self, chunk: usize) {
+    unsafe fn force_phase(dem: *mut Self, chunk: usize, thread: usize) {
         // SAFETY: fields are reached one by one through the raw pointer; only this chunk is borrowed mutably, and
         // only forces of its own particles are written.
         unsafe {
             let shared = &*dem;
-            let forces = shared.forces.as_ptr().cast_mut();
+            let forces = shared.forces_of(chunk, thread).wrapping_sub(shared.chunks[chunk].start);
             let own = (&raw mut (*dem).chunks).cast::<Vec<crate::state::Chunk<S::Real>>>();
             let own = (*own).as_mut_ptr().add(chunk);
             shared.pass(forces).run(shared.path, &mut *own);
@@ -117,23 +117,23 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     /// # Safety
     /// The force phases of this chunk and all before it are over (of all chunks, where space deforms); no other thread
     /// works on this chunk.
-    unsafe fn motion_phase(dem: *mut Self, chunk: usize) {
+    unsafe fn motion_phase(dem: *mut Self, chunk: usize, thread: usize) {
         // SAFETY: only bodies and forces of this chunk are written; ghosts are read.
         unsafe {
             let shared = &*dem;
             let (start, end) = (shared.chunks[chunk].start, shared.chunks[chunk].end);
-            let forces = shared.forces.as_ptr().cast_mut();
+            let forces = shared.forces_of(chunk, thread);
             let bodies = shared.bodies.as_ptr().cast_mut();
             for &(from, place, particle) in &shared.chunks[chunk].incoming {
                 let ghost = &shared.chunks[from as usize].ghosts.forces[place as usize];
-                let force = &mut *forces.add(particle as usize);
+                let force = &mut *forces.add(particle as usize - start);
                 for k in 0..3 {
                     force.force[k] = force.force[k].add(ghost.force[k]);
                     force.torque[k] = force.torque[k].add(ghost.torque[k]);
                 }
             }
             let bodies = std::slice::from_raw_parts_mut(bodies.add(start), end - start);
-            let forces = std::slice::from_raw_parts_mut(forces.add(start), end - start);
+            let forces = std::slice::from_raw_parts_mut(forces, end - start);
             let (grains, drag, dt) = (&shared.grains, shared.drag_rates(), shared.dt);
             let rush = if B::DEFORMS {
                 let rate = shared.boundary.next_rate(shared.virial(), dt);

@@ -312,7 +312,7 @@ impl Gather for Avx2 {
         unsafe {
             for lane in 0..4 {
                 let row = rows[lane];
-                let to = forces.add(*at.add(lane) as usize).cast::<f64>().add(FIELD * ROW);
+                let to = forces.wrapping_add(*at.add(lane) as usize).cast::<f64>().add(FIELD * ROW);
                 _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), row));
             }
         }
@@ -332,9 +332,9 @@ impl Gather for Avx2 {
         unsafe {
             for lane in 0..4 {
                 let row = rows[lane];
-                let to = of_a.add(*a.add(lane) as usize).cast::<f64>().add(FIELD * ROW);
+                let to = of_a.wrapping_add(*a.add(lane) as usize).cast::<f64>().add(FIELD * ROW);
                 _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), row));
-                let to = of_b.add(*b.add(lane) as usize).cast::<f64>().add(FIELD * ROW);
+                let to = of_b.wrapping_add(*b.add(lane) as usize).cast::<f64>().add(FIELD * ROW);
                 let sum = _mm256_load_pd(to);
                 let on_b = others[lane];
                 _mm256_store_pd(
@@ -363,11 +363,11 @@ impl Gather for Avx2 {
         // SAFETY: the caller vouches for the indices; a force is two aligned rows of four doubles.
         unsafe {
             for lane in 0..4 {
-                let to = of_a.add(*a.add(lane) as usize).cast::<f64>();
+                let to = of_a.wrapping_add(*a.add(lane) as usize).cast::<f64>();
                 _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), forces[lane]));
                 let to = to.add(ROW);
                 _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), torques_a[lane]));
-                let to = of_b.add(*b.add(lane) as usize).cast::<f64>();
+                let to = of_b.wrapping_add(*b.add(lane) as usize).cast::<f64>();
                 _mm256_store_pd(to, _mm256_sub_pd(_mm256_load_pd(to), forces[lane]));
                 let to = to.add(ROW);
                 _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), torques_b[lane]));

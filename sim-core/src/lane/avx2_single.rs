@@ -360,7 +360,7 @@ impl Gather for Avx2Single {
         unsafe {
             let rows = Self::records(value);
             for lane in 0..8 {
-                let to = forces.add(*at.add(lane) as usize).cast::<f32>().add(FIELD * 4);
+                let to = forces.wrapping_add(*at.add(lane) as usize).cast::<f32>().add(FIELD * 4);
                 _mm_store_ps(to, _mm_add_ps(_mm_load_ps(to), rows[lane]));
             }
         }
@@ -379,9 +379,9 @@ impl Gather for Avx2Single {
         // SAFETY: as for `scatter`.
         unsafe {
             for lane in 0..8 {
-                let to = of_a.add(*a.add(lane) as usize).cast::<f32>().add(FIELD * 4);
+                let to = of_a.wrapping_add(*a.add(lane) as usize).cast::<f32>().add(FIELD * 4);
                 _mm_store_ps(to, _mm_add_ps(_mm_load_ps(to), rows[lane]));
-                let to = of_b.add(*b.add(lane) as usize).cast::<f32>().add(FIELD * 4);
+                let to = of_b.wrapping_add(*b.add(lane) as usize).cast::<f32>().add(FIELD * 4);
                 let sum = _mm_load_ps(to);
                 _mm_store_ps(
                     to,
@@ -410,9 +410,9 @@ impl Gather for Avx2Single {
         unsafe {
             let lower = _mm256_loadu_ps(LOWER.as_ptr());
             for lane in 0..8 {
-                let to = of_a.add(*a.add(lane) as usize).cast::<f32>();
+                let to = of_a.wrapping_add(*a.add(lane) as usize).cast::<f32>();
                 _mm256_store_ps(to, _mm256_add_ps(_mm256_load_ps(to), on_a[lane]));
-                let to = of_b.add(*b.add(lane) as usize).cast::<f32>();
+                let to = of_b.wrapping_add(*b.add(lane) as usize).cast::<f32>();
                 let on_b = _mm256_xor_ps(lower, on_b[lane]);
                 _mm256_store_ps(to, _mm256_add_ps(_mm256_load_ps(to), on_b));
             }

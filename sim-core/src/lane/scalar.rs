@@ -152,7 +152,7 @@ macro_rules! scalar {
                 value: [Self; 3],
             ) {
                 // SAFETY: the caller vouches for the index and for exclusive access.
-                let force = unsafe { &mut *forces.add(*at as usize) };
+                let force = unsafe { &mut *forces.wrapping_add(*at as usize) };
                 let row = if FIELD == 0 { &mut force.force } else { &mut force.torque };
                 for axis in 0..3 {
                     row[axis] += value[axis];
