@@ -8,6 +8,7 @@ mod discs;
 mod dynamics;
 mod engine;
 mod kernel;
+mod listing;
 mod lists;
 mod motion;
 mod persist;

@@ -121,6 +121,13 @@ pub trait Lane: Copy {
     fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
     /// Whether the mask holds anywhere.
     fn any(mask: Self::Mask) -> bool;
+    /// A mask that holds for the first `count` numbers.
+    #[inline(always)]
+    fn first(count: usize) -> Self::Mask {
+        let places: [Self::Scalar; WIDEST] = std::array::from_fn(|place| Self::Scalar::of(place as f64));
+        // SAFETY: no bundle is wider.
+        unsafe { Self::load(places.as_ptr()) }.less(Self::splat(count as f64))
+    }
 
     /// Reads `WIDTH` numbers.
     ///

@@ -5,7 +5,7 @@ mod spatial;
 mod vector;
 
 pub use planar::Planar;
-pub use spatial::{Spatial, SpatialSlide, cross};
+pub use spatial::{Spatial, SpatialSlide, cross, sub_dot};
 pub use vector::{V1, V2, V3, Vector};
 
 use crate::lane::{Lane, Real};

@@ -204,6 +204,7 @@ where
                 self.tangential.stretch(
                     normal,
                     slide,
+                    approach,
                     elastic,
                     active,
                     dt,

@@ -24,16 +24,18 @@ pub trait Tangential<S: Space>: Copy + Send + Sync + 'static {
     /// Part of the kernel name.
     const NAME: &'static str;
 
-    /// Tangential force on a of a contact with this `normal`, with `elastic` the elastic normal force and `active`
-    /// whether the contact is closed. A [`Tangential::BOUNDED`] law leaves its bound out; the mask says where the force
+    /// Tangential force on a of a contact with this `normal`, with the rate `approach` of its bodies, `elastic` the elastic
+    /// normal force and `active` whether the contact is closed. A [`Tangential::BOUNDED`] law leaves its bound out; the mask says where the force
     /// exceeds it: there [`Tangential::limit`] must follow. The mask of other laws means nothing.
     ///
     /// # Safety
     /// `memory` points to [`Tangential::SLOTS`] slots of a group at the first lane.
+    #[expect(clippy::too_many_arguments, reason = "what a tangential law may look at, each of its own kind")]
     unsafe fn stretch<L: Lane>(
         &self,
         normal: S::Vector<L>,
         slide: &S::Slide<L>,
+        approach: L,
         elastic: L,
         active: L::Mask,
         dt: L,

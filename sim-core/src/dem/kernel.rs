@@ -80,7 +80,7 @@ struct Targets<T: Number> {
 }
 
 impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C> {
-    /// The contacts of a list: whole groups in batches, what is left one by one.
+    /// The contacts of a list: whole groups in batches, then what is left; on a plain path one by one.
     ///
     /// # Safety
     /// The list holds valid indices and memory for its groups; the forces of its particles a and those of `targets`
@@ -105,16 +105,29 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             virial = [virial[0].add(own[0]), virial[1].add(own[1])];
             first += count;
         }
-        for k in groups * group_of..list.count {
+        if L::WIDTH == group_of && groups * group_of < list.count {
+            // What is left is a group whose last lanes repeat its first pair: they are worked out and count nothing.
+            let left = L::first(list.count - groups * group_of);
+            // SAFETY: lists keep room for whole groups.
+            unsafe {
+                let a = indices.add(groups * 2 * group_of);
+                let memory = memory.add(groups * C::SLOTS * group_of);
+                let constants = constants::<G, S::Real>(rows, groups, 0);
+                let contact = self.pair::<L>(a, a.add(group_of), memory, constants).keep(left);
+                self.apply_group::<L>(indices, targets, groups, &contact, &mut virial);
+            }
+        }
+        let one_by_one = if L::WIDTH == group_of { list.count } else { 0 };
+        for k in one_by_one..list.count {
             let (group, lane) = (k / group_of, k % group_of);
             // SAFETY: contact k is in the list.
             unsafe {
                 let a = indices.add(group * 2 * group_of + lane);
                 let memory = memory.add(group * C::SLOTS * group_of + lane);
                 let constants = constants::<G, S::Real>(rows, group, lane);
-                let contact = self.pair::<S::Real>(a, a.add(group_of), memory, constants);
+                let contact = self.pair::<L>(a, a.add(group_of), memory, constants);
                 let target = targets.at.add(group * targets.stride + lane);
-                let own = self.apply::<S::Real>(a, targets.forces, target, &contact);
+                let own = self.apply::<L>(a, targets.forces, target, &contact);
                 rest[0] += wide_sum(own[0]);
                 rest[1] += wide_sum(own[1]);
             }

@@ -56,7 +56,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         pairs.sort_unstable_by_key(|contact| (contact.a, contact.b));
         walls.sort_unstable_by_key(|contact| (contact.b, contact.a));
         let write = |list: &mut ContactList<S::Real>, a: u32, b: u32, memory: &[f64]| {
-            list.push(a, b, None, C::vacant);
+            list.push(a, b, C::vacant);
             for (slot, &value) in memory.iter().enumerate() {
                 *list.slot_mut(list.count - 1, slot) = S::Real::of(value);
             }

@@ -2,12 +2,11 @@
 //! of a crew takes part; no result depends on what is listed, as long as no touching pair is missing.
 
 use super::engine::Dem;
+use super::listing::{list_pairs, list_walls};
 use super::lists::{NEAR_MARGIN, point, speed};
 use super::threads::{Crew, Shared};
 use crate::boundary::Boundary;
 use crate::contact::ContactLaw;
-use crate::control::ServoWalls;
-use crate::lane::Number;
 use crate::neighbour::near_pairs;
 use crate::space::Space;
 use crate::state::{Body, Chunk, Grains};
@@ -167,12 +166,13 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         }
         for c in 0..self.chunks.len() {
             let (earlier, later) = self.chunks.split_at_mut(c + 1);
-            let mut target = 0;
-            for (place, &particle) in (0_u32..).zip(&earlier[c].ghosts.particles) {
-                while later[target].end <= particle as usize {
-                    target += 1;
+            let (particles, mut from) = (&earlier[c].ghosts.particles, 0);
+            for target in later {
+                let to = from + particles[from..].partition_point(|&particle| (particle as usize) < target.end);
+                if from < to {
+                    target.incoming.push((c, from..to));
                 }
-                later[target].incoming.push((c as u32, place, particle));
+                from = to;
             }
         }
     }
@@ -224,7 +224,6 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                 |place| places[place],
                 |place| real[place as usize],
                 |i, j| grains.radius(i) + grains.radius(j) + reach,
-                &mut chunk.near_start,
                 &mut chunk.near,
             );
         }
@@ -234,121 +233,4 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
 /// Displacement budget [d] at a speed, for a time `horizon` [τ].
 fn budget_of(speed: f64, horizon: f64) -> f64 {
     (horizon * speed).clamp(LEAST_BUDGET, MOST_BUDGET)
-}
-
-/// Lists the pairs of a chunk that may touch, keeping the memory of those that were listed.
-fn list_pairs<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>>(
-    chunk: &mut Chunk<S::Real>,
-    bodies: &[Body<S::Real>],
-    budget: &[f64],
-    grains: &G,
-    boundary: &B,
-    slack: f64,
-    law: &C,
-) {
-    select::<S, G, B>(chunk, bodies, budget, grains, boundary, slack + law.range());
-    let [inner, outer] = &mut chunk.spare;
-    inner.clear();
-    outer.clear();
-    let end = chunk.end as u32;
-    let (mut inner_at, mut outer_at) = (0, 0);
-    for &pair in &chunk.selected {
-        let (list, old, at) = if pair.1 < end {
-            (&mut *inner, &chunk.inner, &mut inner_at)
-        } else {
-            (&mut *outer, &chunk.outer, &mut outer_at)
-        };
-        while *at < old.count && old.pair(*at) < pair {
-            *at += 1;
-        }
-        let known = *at < old.count && old.pair(*at) == pair;
-        list.push(pair.0, pair.1, known.then_some((old, *at)), C::vacant);
-        if G::CONSTANTS > 0 {
-            list.set_constants(grains.constants(pair.0 as usize, pair.1 as usize));
-        }
-    }
-    let other_ghosts = outer.count != chunk.outer.count
-        || outer.indices != chunk.outer.indices
-        || chunk.ghosts.targets.len() != outer.count;
-    std::mem::swap(&mut chunk.inner, inner);
-    std::mem::swap(&mut chunk.outer, outer);
-    if other_ghosts {
-        list_ghosts(chunk);
-    }
-}
-
-/// Chooses the near pairs of a chunk whose gap may close while the budgets last, in order.
-fn select<S: Space, G: Grains, B: Boundary<S>>(
-    chunk: &mut Chunk<S::Real>,
-    bodies: &[Body<S::Real>],
-    budget: &[f64],
-    grains: &G,
-    boundary: &B,
-    slack: f64,
-) {
-    let Chunk { selected, near, near_start, start, end, .. } = chunk;
-    // One place more than there are pairs: each is written, then kept or overwritten by the next, without a branch
-    // that nobody can predict.
-    selected.resize(near.len() + 1, (0, 0));
-    let mut count = 0;
-    for (i, range) in (*start..*end).zip(near_start.windows(2)) {
-        let x = &bodies[i].position;
-        let reach = grains.radius(i) + budget[i] + slack;
-        for &j in &near[range[0] as usize..range[1] as usize] {
-            let y = &bodies[j as usize].position;
-            let [dx, dy, dz] = boundary.separation([y[0] - x[0], y[1] - x[1], y[2] - x[2]]);
-            let cutoff = reach + grains.radius(j as usize) + budget[j as usize];
-            selected[count] = (i as u32, j);
-            count += usize::from(dx * dx + dy * dy + dz * dz < cutoff * cutoff);
-        }
-    }
-    selected.truncate(count);
-}
-
-/// Lists the ghosts of a chunk: the particles b of its outer contacts.
-fn list_ghosts<T: Number>(chunk: &mut Chunk<T>) {
-    let ghosts = &mut chunk.ghosts;
-    ghosts.changed = true;
-    ghosts.particles.clear();
-    ghosts.particles.extend((0..chunk.outer.count).map(|k| chunk.outer.pair(k).1));
-    ghosts.particles.sort_unstable();
-    ghosts.particles.dedup();
-    ghosts.forces.clear();
-    ghosts.forces.resize(ghosts.particles.len(), crate::state::Force::default());
-    ghosts.targets.clear();
-    for k in 0..chunk.outer.count {
-        let (_, b) = chunk.outer.pair(k);
-        let place = ghosts.particles.binary_search(&b).expect("every b of an outer contact is a ghost");
-        ghosts.targets.push(place as u32);
-    }
-}
-
-/// Lists the particles of a chunk that may touch a wall, keeping the memory of those that were listed.
-fn list_walls<S: Space, G: Grains, C: ContactLaw<S>>(
-    chunk: &mut Chunk<S::Real>,
-    bodies: &[Body<S::Real>],
-    budget: &[f64],
-    grains: &G,
-    walls: &ServoWalls,
-    wall_budget: &[f64; 6],
-) {
-    for wall in 0..6 {
-        let (axis, outward) = (ServoWalls::axis(wall), ServoWalls::outward(wall));
-        let list = &mut chunk.spare[0];
-        list.clear();
-        let old = &chunk.walls[wall];
-        let mut at = 0;
-        for i in chunk.start..chunk.end {
-            let distance = (walls.position[wall] - bodies[i].position[axis]) * outward;
-            if distance < grains.radius(i) + budget[i] + wall_budget[wall] {
-                let particle = i as u32;
-                while at < old.count && old.pair(at).0 < particle {
-                    at += 1;
-                }
-                let known = at < old.count && old.pair(at).0 == particle;
-                list.push(particle, particle, known.then_some((old, at)), C::vacant);
-            }
-        }
-        std::mem::swap(&mut chunk.walls[wall], &mut chunk.spare[0]);
-    }
 }

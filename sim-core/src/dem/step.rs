@@ -124,12 +124,14 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             let (start, end) = (shared.chunks[chunk].start, shared.chunks[chunk].end);
             let forces = shared.forces_of(chunk, thread);
             let bodies = shared.bodies.as_ptr().cast_mut();
-            for &(from, place, particle) in &shared.chunks[chunk].incoming {
-                let ghost = &shared.chunks[from as usize].ghosts.forces[place as usize];
-                let force = &mut *forces.add(particle as usize - start);
-                for k in 0..3 {
-                    force.force[k] = force.force[k].add(ghost.force[k]);
-                    force.torque[k] = force.torque[k].add(ghost.torque[k]);
+            for (from, places) in &shared.chunks[chunk].incoming {
+                let ghosts = &shared.chunks[*from].ghosts;
+                let particles = &ghosts.particles[places.clone()];
+                for (&particle, ghost) in particles.iter().zip(&ghosts.forces[places.clone()]) {
+                    let force = &mut *forces.add(particle as usize - start);
+                    // Whole rows, each read before it is written: then each is an operation or two.
+                    force.force = std::array::from_fn(|k| force.force[k].add(ghost.force[k]));
+                    force.torque = std::array::from_fn(|k| force.torque[k].add(ghost.torque[k]));
                 }
             }
             let bodies = std::slice::from_raw_parts_mut(bodies.add(start), end - start);

@@ -93,21 +93,17 @@ impl CellList {
     }
 }
 
-/// Neighbours of particles `range`: those with a higher index closer than `cutoff(i, j)`, ascending, one run per
-/// particle (`starts` gets one entry per particle and the end). `real` gives the particle that a place in the cells is
-/// an image of.
+/// Pairs (i, j) of particles i of a range with those of a higher index j closer than `cutoff(i, j)`, ascending. `real` gives
+/// the particle that a place in the cells is an image of.
 pub fn near_pairs(
     cells: &CellList,
     range: std::ops::Range<usize>,
     position: impl Fn(usize) -> [f64; 3],
     real: impl Fn(u32) -> u32,
     cutoff: impl Fn(usize, usize) -> f64,
-    starts: &mut Vec<u32>,
-    near: &mut Vec<u32>,
+    near: &mut Vec<(u32, u32)>,
 ) {
-    starts.clear();
     near.clear();
-    starts.push(0);
     for i in range {
         let from = near.len();
         let x = position(i);
@@ -117,12 +113,11 @@ pub fn near_pairs(
                 let y = position(place as usize);
                 let square = (y[0] - x[0]).powi(2) + (y[1] - x[1]).powi(2) + (y[2] - x[2]).powi(2);
                 if square < cutoff(i, j as usize).powi(2) {
-                    near.push(j);
+                    near.push((i as u32, j));
                 }
             }
         });
         near[from..].sort_unstable();
-        starts.push(near.len() as u32);
     }
 }
 
@@ -146,15 +141,9 @@ mod tests {
                 .collect();
             let mut cells = CellList::default();
             cells.build(positions.len(), cutoff, |i| positions[i]);
-            let (mut starts, mut near) = (Vec::new(), Vec::new());
-            near_pairs(&cells, 0..positions.len(), |i| positions[i], |i| i, |_, _| cutoff, &mut starts, &mut near);
-            let mut found = Vec::new();
-            for i in 0..positions.len() {
-                for &j in &near[starts[i] as usize..starts[i + 1] as usize] {
-                    found.push((i as u32, j));
-                }
-            }
-            prop_assert_eq!(found, all_pairs(&positions, |_, _| cutoff));
+            let mut near = Vec::new();
+            near_pairs(&cells, 0..positions.len(), |i| positions[i], |i| i, |_, _| cutoff, &mut near);
+            prop_assert_eq!(near, all_pairs(&positions, |_, _| cutoff));
         }
     }
 }

@@ -13,8 +13,8 @@ pub struct Spatial<R = f64>(PhantomData<R>);
 /// How contact points slide past each other in space, at t_n − dt/2.
 #[derive(Clone, Copy)]
 pub struct SpatialSlide<L: Lane> {
-    /// Velocity of the contact point of b minus that of a, without its normal part [d/τ].
-    pub slip: V3<L>,
+    /// Velocity of the contact point of b minus that of a [d/τ]: the slip, and −u along the normal of that time.
+    pub between: V3<L>,
     /// n − (dt/2) dn/dt: the normal of that time [1].
     pub normal_between: V3<L>,
     /// (ω·n) dt with the mean spin of the two bodies: angle by which the contact turns about its normal [1].
@@ -26,6 +26,13 @@ pub struct SpatialSlide<L: Lane> {
 pub fn cross<L: Lane>(a: V3<L>, b: V3<L>) -> V3<L> {
     let ([ax, ay, az], [bx, by, bz]) = (a.0, b.0);
     V3([az.neg_mul_add(by, ay.mul(bz)), ax.neg_mul_add(bz, az.mul(bx)), ay.neg_mul_add(bx, ax.mul(by))])
+}
+
+/// start − a·b.
+#[inline(always)]
+pub fn sub_dot<L: Lane>(start: L, a: V3<L>, b: V3<L>) -> L {
+    let ([ax, ay, az], [bx, by, bz]) = (a.0, b.0);
+    az.neg_mul_add(bz, ay.neg_mul_add(by, ax.neg_mul_add(bx, start)))
 }
 
 /// start − a × b.
@@ -72,8 +79,7 @@ impl<R: Real> Space for Spatial<R> {
     fn approach<L: Lane>(normal: V3<L>, velocity: V3<L>, inverse_distance: L, half_dt: L) -> (L, V3<L>) {
         let zero = L::splat(0.0);
         let share = inverse_distance.mul(zero.sub(half_dt));
-        let ([nx, ny, nz], [vx, vy, vz]) = (normal.0, velocity.0);
-        let closing = vz.neg_mul_add(nz, vy.neg_mul_add(ny, vx.neg_mul_add(nx, zero)));
+        let closing = sub_dot(zero, velocity, normal);
         let square_across = closing.neg_mul_add(closing, velocity.dot(velocity));
         let along = share.mul_add(closing, L::splat(1.0));
         let normal_between = velocity.scale(share).add_scaled(along, normal);
@@ -81,9 +87,9 @@ impl<R: Real> Space for Spatial<R> {
     }
     #[inline(always)]
     fn slide<L: Lane>(passing: &Passing<Self, L>, rim: V3<L>) -> SpatialSlide<L> {
-        let Passing { normal, velocity, approach, across: normal_between, spin_sum, half_dt } = *passing;
-        let slip = sub_cross(velocity.add_scaled(approach, normal_between), rim, normal_between);
-        SpatialSlide { slip, normal_between, turn: spin_sum.dot(normal).mul(half_dt) }
+        let Passing { normal, velocity, across: normal_between, spin_sum, half_dt, .. } = *passing;
+        let between = sub_cross(velocity, rim, normal_between);
+        SpatialSlide { between, normal_between, turn: spin_sum.dot(normal).mul(half_dt) }
     }
     #[inline(always)]
     fn contact_force<L: Lane>(normal: V3<L>, push: L, shear: V3<L>) -> V3<L> {

@@ -45,24 +45,24 @@ pub struct Chunk<T: Number> {
     pub outer: ContactList<T>,
     /// Ghosts of the outer contacts.
     pub ghosts: Ghosts<T>,
-    /// Ghosts of earlier chunks that lie in this one: (chunk, place in its ghosts, particle).
-    pub incoming: Vec<(u32, u32, u32)>,
+    /// Ghosts of earlier chunks that lie in this one: chunk, places among its ghosts.
+    pub incoming: Vec<(usize, std::ops::Range<usize>)>,
     /// Contacts with each wall.
     pub walls: [WallList<T>; 6],
     /// Σ F_α r_α of the contacts its particles own, where space deforms [k_n d].
     pub virial: [f64; 3],
     /// Force of the particles of this chunk on each wall, positive outwards [k_n d].
     pub wall_force: [f64; 6],
-    /// Neighbours of particle `start + k`: `near[near_start[k]..near_start[k + 1]]`, ascending, above the particle.
-    pub near_start: Vec<u32>,
-    /// See `near_start`.
-    pub near: Vec<u32>,
+    /// Near pairs (a, b) with a in the chunk and a < b, ascending.
+    pub near: Vec<(u32, u32)>,
     /// Largest |v component| / displacement budget in the last step [1/τ].
     pub rush: f64,
     /// Whether a particle could leave the margin of its near pairs.
     pub strayed: bool,
-    /// Scratch: the near pairs that may touch.
-    pub selected: Vec<(u32, u32)>,
+    /// Scratch: the near pairs that may touch, inside the chunk and to later ones.
+    pub selected: [Vec<(u32, u32)>; 2],
+    /// Scratch: particles that may touch a wall.
+    pub outermost: Vec<u32>,
     /// Storage for the next lists, swapped at a refresh.
     pub spare: [ContactList<T>; 2],
 }
@@ -89,8 +89,9 @@ impl<T: Number> Chunk<T> {
             + self.outer.bytes()
             + self.spare.iter().map(ContactList::bytes).sum::<usize>()
             + self.walls.iter().map(ContactList::bytes).sum::<usize>()
-            + (self.near.capacity() + self.near_start.capacity()) * size_of::<u32>()
-            + self.selected.capacity() * size_of::<(u32, u32)>()
+            + self.near.capacity() * size_of::<(u32, u32)>()
+            + self.selected.iter().map(Vec::capacity).sum::<usize>() * size_of::<(u32, u32)>()
+            + self.outermost.capacity() * size_of::<u32>()
             + self.ghosts.forces.capacity() * size_of::<Force<T>>()
             + (self.ghosts.particles.capacity() + self.ghosts.targets.capacity()) * size_of::<u32>()
     }

@@ -5,7 +5,8 @@ use crate::lane::Number;
 /// Pairs that may touch before the next refresh, sorted by (a, b), a < b.
 ///
 /// A group is [`Number::GROUP`] pairs. Its indices are stored a a … b b …; its memory is `slots` rows of one number per
-/// pair. The last group may be partly filled: `count` says how many pairs there are.
+/// pair. The last group may be partly filled: `count` says how many pairs there are; the places of the others hold pairs of the
+/// list as well.
 #[derive(Clone, Debug, Default)]
 pub struct ContactList<T> {
     /// Pairs in the list.
@@ -37,16 +38,16 @@ impl<T: Number> ContactList<T> {
         self.constants.clear();
     }
 
-    /// Gives the newest pair its constants.
-    #[inline]
-    pub fn set_constants(&mut self, values: [f64; 3]) {
-        let (group, lane) = ((self.count - 1) / Self::GROUP, (self.count - 1) % Self::GROUP);
-        let base = group * 3 * Self::GROUP;
-        if self.constants.len() <= base {
-            self.constants.resize(base + 3 * Self::GROUP, T::of(1.0));
-        }
-        for (row, value) in values.into_iter().enumerate() {
-            self.constants[base + row * Self::GROUP + lane] = T::of(value);
+    /// Gives every pair its constants.
+    pub fn set_constants(&mut self, values: impl Fn(u32, u32) -> [f64; 3]) {
+        self.constants.clear();
+        self.constants.resize(self.indices.len() / (2 * Self::GROUP) * 3 * Self::GROUP, T::of(1.0));
+        for k in 0..self.count {
+            let (a, b) = self.pair(k);
+            let base = k / Self::GROUP * 3 * Self::GROUP + k % Self::GROUP;
+            for (row, value) in values(a, b).into_iter().enumerate() {
+                self.constants[base + row * Self::GROUP] = T::of(value);
+            }
         }
     }
 
@@ -68,9 +69,8 @@ impl<T: Number> ContactList<T> {
         &mut self.memory[(k / Self::GROUP * self.slots + slot) * Self::GROUP + k % Self::GROUP]
     }
 
-    /// Appends a pair; its memory is that of `from` in another list, or vacant.
-    #[inline]
-    pub fn push(&mut self, a: u32, b: u32, from: Option<(&Self, usize)>, vacant: fn(usize) -> f64) {
+    /// Appends a pair with vacant memory.
+    pub fn push(&mut self, a: u32, b: u32, vacant: fn(usize) -> f64) {
         let (group, lane) = (self.count / Self::GROUP, self.count % Self::GROUP);
         let at = group * 2 * Self::GROUP;
         if lane == 0 {
@@ -80,21 +80,48 @@ impl<T: Number> ContactList<T> {
         }
         self.indices[at + lane] = a;
         self.indices[at + Self::GROUP + lane] = b;
-        let base = group * self.slots * Self::GROUP + lane;
-        match from {
-            Some((list, k)) => {
-                let source = k / Self::GROUP * self.slots * Self::GROUP + k % Self::GROUP;
-                for slot in 0..self.slots {
-                    self.memory[base + slot * Self::GROUP] = list.memory[source + slot * Self::GROUP];
+        for slot in 0..self.slots {
+            self.memory[(group * self.slots + slot) * Self::GROUP + lane] = T::of(vacant(slot));
+        }
+        self.count += 1;
+    }
+
+    /// Makes this the list of `pairs` (ascending), with the memory that `old` has of them, else vacant. `slots` is that of
+    /// the list, known where this is compiled.
+    #[inline(always)]
+    pub fn renew(&mut self, pairs: &[(u32, u32)], old: &Self, slots: usize, vacant: fn(usize) -> f64) {
+        assert_eq!((self.slots, old.slots), (slots, slots), "the slots of the lists of one law");
+        let groups = pairs.len().div_ceil(Self::GROUP);
+        self.count = pairs.len();
+        self.constants.clear();
+        self.indices.resize(groups * 2 * Self::GROUP, 0);
+        self.memory.resize(groups * slots * Self::GROUP, T::default());
+        let mut at = 0;
+        for (group, indices) in self.indices.chunks_exact_mut(2 * Self::GROUP).enumerate() {
+            let own = &pairs[group * Self::GROUP..];
+            let memory = &mut self.memory[group * slots * Self::GROUP..][..slots * Self::GROUP];
+            for lane in 0..Self::GROUP {
+                // The last lanes of the last group repeat its first pair.
+                let Some(&pair) = own.get(lane) else {
+                    (indices[lane], indices[Self::GROUP + lane]) = own[0];
+                    continue;
+                };
+                (indices[lane], indices[Self::GROUP + lane]) = pair;
+                while at < old.count && old.pair(at) < pair {
+                    at += 1;
                 }
-            }
-            None => {
-                for slot in 0..self.slots {
-                    self.memory[base + slot * Self::GROUP] = T::of(vacant(slot));
+                if at < old.count && old.pair(at) == pair {
+                    let from = &old.memory[at / Self::GROUP * slots * Self::GROUP..][..slots * Self::GROUP];
+                    for slot in 0..slots {
+                        memory[slot * Self::GROUP + lane] = from[slot * Self::GROUP + at % Self::GROUP];
+                    }
+                } else {
+                    for slot in 0..slots {
+                        memory[slot * Self::GROUP + lane] = T::of(vacant(slot));
+                    }
                 }
             }
         }
-        self.count += 1;
     }
 
     /// Bytes held.

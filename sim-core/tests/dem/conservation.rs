@@ -151,7 +151,7 @@ fn tangential_spring_turns_with_a_rigidly_rotating_pair() {
                 let omega = angle / time;
                 let mut memory = [0.0; 3 * f64::GROUP];
                 for k in 0..3 {
-                    memory[k * f64::GROUP] = spring[k];
+                    memory[k * f64::GROUP] = 1.5 * spring[k];
                 }
                 let mut force = [0.0; 3];
                 for n in 1..=steps {

@@ -20,6 +20,7 @@ impl<S: Space> Tangential<S> for Frictionless {
         _: S::Vector<L>,
         _: &S::Slide<L>,
         _: L,
+        _: L,
         active: L::Mask,
         _: L,
         _: *mut L::Scalar,

@@ -29,6 +29,7 @@ impl<R: Real> Tangential<Planar<R>> for PlanarSpring {
         &self,
         _: V2<L>,
         slip: &L,
+        _: L,
         elastic: L,
         active: L::Mask,
         dt: L,
@@ -72,7 +73,7 @@ mod tests {
         let memory = memory.as_mut_ptr();
         // SAFETY: the caller vouches.
         unsafe {
-            let (force, sliding) = law.stretch::<f64>(normal, slide, elastic, elastic > 0.0, dt, memory);
+            let (force, sliding) = law.stretch::<f64>(normal, slide, 0.0, elastic, elastic > 0.0, dt, memory);
             if !(T::BOUNDED && sliding) {
                 return force;
             }
@@ -94,7 +95,7 @@ mod tests {
             let rate = 0.3 * libm::cos(3.0 * (now - 0.5 * dt));
             let (u, v) = (-libm::sin(middle), libm::cos(middle));
             let slide = SpatialSlide {
-                slip: V3([u * rate, v * rate, 0.0]),
+                between: V3([u * rate, v * rate, 0.0]),
                 normal_between: V3([x - 0.5 * dt * turn * u, y - 0.5 * dt * turn * v, 0.0]),
                 turn: 0.0,
             };

@@ -63,6 +63,16 @@ pub struct Evaluated<S: Space, L: Gather> {
     pub torque_b: S::Spin<L>,
 }
 
+impl<S: Space, L: Gather> Evaluated<S, L> {
+    /// The contacts of a mask; of the others the forces are zero.
+    #[inline(always)]
+    pub(super) fn keep(self, mask: L::Mask) -> Self {
+        let (force, response) = (self.force.keep(mask), self.response);
+        let (torque_a, torque_b) = (self.torque_a.keep(mask), self.torque_b.keep(mask));
+        Self { force, torque_a, torque_b, response: Response { normal: response.normal.keep(mask), ..response }, ..self }
+    }
+}
+
 impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C> {
     /// Pair contacts a–b.
     ///

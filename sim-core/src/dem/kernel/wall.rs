@@ -151,46 +151,59 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
                 while k < count {
                     let a = indices.add((first + k) * 2 * group_of);
                     let memory = memory.add((first + k) * C::SLOTS * group_of);
-                    let normal = self.wall_group::<L>(a, memory, (*touching.add(k)).assume_init_ref());
-                    let mut lanes = [S::Real::default(); WIDEST];
-                    normal.store(lanes.as_mut_ptr());
-                    for &part in &lanes[..L::WIDTH] {
-                        sum += part.into();
-                    }
+                    let contact = self.push::<L>((*touching.add(k)).assume_init_ref(), memory);
+                    sum = self.add_wall_group::<L>(a, &contact, L::WIDTH, sum);
                     k += 1;
                 }
             }
             first += count;
         }
-        for k in groups * group_of..list.count {
-            let (group, lane) = (k / group_of, k % group_of);
-            // SAFETY: contact k is in the list.
-            unsafe {
+        // SAFETY: lists keep room for whole groups; contact k is in the list.
+        unsafe {
+            if L::WIDTH == group_of && groups * group_of < list.count {
+                // As of pairs: the last lanes repeat the first particle and count nothing.
+                let left = list.count - groups * group_of;
+                let a = indices.add(groups * 2 * group_of);
+                let memory = memory.add(groups * C::SLOTS * group_of);
+                let contact = self.wall::<L>(walls, wall, a, memory).keep(L::first(left));
+                sum = self.add_wall_group::<L>(a, &contact, left, sum);
+            }
+            let one_by_one = if L::WIDTH == group_of { list.count } else { 0 };
+            for k in one_by_one..list.count {
+                let (group, lane) = (k / group_of, k % group_of);
                 let a = indices.add(group * 2 * group_of + lane);
                 let memory = memory.add(group * C::SLOTS * group_of + lane);
-                let touching = self.touch::<S::Real>(walls, wall, a);
-                sum += self.wall_group::<S::Real>(a, memory, &touching).into();
+                let contact = self.wall::<L>(walls, wall, a, memory);
+                sum = self.add_wall_group::<L>(a, &contact, 1, sum);
             }
         }
         sum
     }
 
-    /// One group of contacts with a wall: adds to the particles, returns the normal forces.
+    /// Adds the forces of a group of contacts with a wall to the particles, and the first `count` normal forces to a sum.
+    ///
+    /// # Safety
+    /// `a` points to `L::WIDTH` indices of bodies; their forces are writable and no other thread touches them.
     #[inline(always)]
-    unsafe fn wall_group<L: Gather<Scalar = S::Real>>(
+    unsafe fn add_wall_group<L: Gather<Scalar = S::Real>>(
         &self,
         a: *const u32,
-        memory: *mut S::Real,
-        touching: &Touching<S, L>,
-    ) -> L {
-        // SAFETY: the caller vouches for indices, memory and forces.
+        contact: &Evaluated<S, L>,
+        count: usize,
+        mut sum: f64,
+    ) -> f64 {
+        let mut lanes = [S::Real::default(); WIDEST];
+        // SAFETY: the caller vouches for indices and forces; no bundle is wider than the lanes.
         unsafe {
-            let contact = self.push::<L>(touching, memory);
             L::scatter::<0>(self.forces, a, S::vector_record(contact.force));
             if C::NEEDS_SPIN {
                 L::scatter::<1>(self.forces, a, S::spin_record(contact.torque_a));
             }
-            contact.response.normal
+            contact.response.normal.store(lanes.as_mut_ptr());
         }
+        for &part in &lanes[..count] {
+            sum += part.into();
+        }
+        sum
     }
 }
