@@ -37,6 +37,9 @@ pub trait Number: Copy + Default + PartialEq + std::fmt::Debug + Into<f64> + Sen
     const AT_BOUND: f64;
     /// Part of the kernel name.
     const NAME: &'static str;
+    /// Place of the torque among the numbers of a force: right after the force where that saves half of a register to write, else in
+    /// the next row of four.
+    const TORQUE: usize;
     /// Makes a body begin where it is fetched in the fewest pieces.
     type Alignment: Copy + Default + PartialEq + std::fmt::Debug + Send + Sync + 'static;
 
@@ -58,6 +61,7 @@ impl Number for f64 {
     const GROUP: usize = 4;
     const AT_BOUND: f64 = 1e-12;
     const NAME: &'static str = "";
+    const TORQUE: usize = 3;
     /// A body of three rows of 32 bytes.
     type Alignment = Aligned32;
 
@@ -71,6 +75,7 @@ impl Number for f32 {
     const GROUP: usize = 8;
     const AT_BOUND: f64 = 1e-6;
     const NAME: &'static str = "mixed+";
+    const TORQUE: usize = 4;
     /// A body of 32 + 16 + 16 bytes.
     type Alignment = Aligned64;
 

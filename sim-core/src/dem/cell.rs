@@ -93,12 +93,12 @@ impl<R: Real, G: Grains, C: ContactLaw<Planar<R>>> CellDynamics for Dem<Planar<R
             let separation = Planar::<R>::vector_record(contact.separation);
             let torques: [f64; 2] = [contact.torque_a, contact.torque_b].map(|torque| torque.0[0].into());
             for axis in 0..2 {
-                forces[a as usize].force[axis] += force[axis];
-                forces[b as usize].force[axis] -= force[axis];
+                *forces[a as usize].force_mut(axis) += force[axis];
+                *forces[b as usize].force_mut(axis) -= force[axis];
                 virial[axis] -= force[axis] * separation[axis];
             }
-            forces[a as usize].torque[2] += torques[0];
-            forces[b as usize].torque[2] += torques[1];
+            *forces[a as usize].torque_mut(2) += torques[0];
+            *forces[b as usize].torque_mut(2) += torques[1];
             let response = &contact.response;
             let [overlap, elastic, attraction]: [f64; 3] =
                 [contact.overlap, response.elastic, response.attraction].map(R::into);
@@ -122,8 +122,8 @@ impl<R: Real, G: Grains, C: ContactLaw<Planar<R>>> CellDynamics for Dem<Planar<R
         for (slot, (body, force)) in self.bodies.iter().zip(&forces).enumerate() {
             let disc = self.original[slot] as usize;
             let [u, v, w, _] = body.velocity.map(R::into);
-            residuals.forces[disc] = libm::hypot(force.force[0], force.force[1]);
-            residuals.moments[disc] = force.torque[2].abs();
+            residuals.forces[disc] = libm::hypot(force.force()[0], force.force()[1]);
+            residuals.moments[disc] = force.torque()[2].abs();
             residuals.kinetic[disc] =
                 0.5 * (self.grains.mass(slot) * (u * u + v * v) + self.grains.inertia(slot) * w * w);
         }

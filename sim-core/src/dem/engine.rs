@@ -199,8 +199,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             let force = &now.forces[slot];
             let (mut velocity, mut spin) = S::motion(body);
             for axis in 0..3 {
-                velocity[axis] -= 0.5 * dt * force.force[axis] * self.grains.inverse_mass(slot);
-                spin[axis] -= 0.5 * dt * force.torque[axis] * self.grains.inverse_inertia(slot);
+                velocity[axis] -= 0.5 * dt * force.force()[axis] * self.grains.inverse_mass(slot);
+                spin[axis] -= 0.5 * dt * force.torque()[axis] * self.grains.inverse_inertia(slot);
             }
             set_motion::<S>(body, velocity, spin);
         }
@@ -223,8 +223,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             let force = &now.forces[slot];
             let (mut velocity, mut spin) = S::motion(body);
             for axis in 0..3 {
-                velocity[axis] += shift * force.force[axis] * self.grains.inverse_mass(slot);
-                spin[axis] += shift * force.torque[axis] * self.grains.inverse_inertia(slot);
+                velocity[axis] += shift * force.force()[axis] * self.grains.inverse_mass(slot);
+                spin[axis] += shift * force.torque()[axis] * self.grains.inverse_inertia(slot);
             }
             set_motion::<S>(body, velocity, spin);
         }

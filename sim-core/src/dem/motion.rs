@@ -111,7 +111,10 @@ fn free<T: Real, G: Grains, const SPIN: bool>(
         let per_inertia = T::of(dt * grains.inverse_inertia(first + k));
         let inverse_budget = body.position[3];
         // One row after the other, each in one register.
-        let velocity: [T; 4] = std::array::from_fn(|c| force.force[c].mul_add(per_mass, body.velocity[c]));
+        // In space the fourth number of a force may be one of the torque, which moves nothing here.
+        let gain = [per_mass, per_mass, per_mass, T::default()];
+        let pull = force.numbers;
+        let velocity: [T; 4] = std::array::from_fn(|c| pull[c].mul_add(gain[c], body.velocity[c]));
         body.velocity = velocity;
         let velocity = velocity.map(T::into);
         for c in 0..4 {
@@ -123,16 +126,22 @@ fn free<T: Real, G: Grains, const SPIN: bool>(
         }
         if SPIN {
             for c in 0..4 {
-                body.spin[c] = force.torque[c].mul_add(per_inertia, body.spin[c]);
+                body.spin[c] = pull[T::TORQUE + c].mul_add(per_inertia, body.spin[c]);
             }
         }
-        // Row by row: put together first, it would be stored in pieces and read whole.
-        force.force = [T::default(); 4];
-        if SPIN {
-            force.torque = [T::default(); 4];
-        }
+        clear::<T, SPIN>(force);
     }
     rush[0].max(rush[1]).max(rush[2])
+}
+
+/// Makes a force zero, row by row: put together first, it would be stored in pieces and read whole.
+#[inline(always)]
+fn clear<T: Real, const SPIN: bool>(force: &mut Force<T>) {
+    let (force, torque) = force.numbers.split_at_mut(4);
+    force.fill(T::default());
+    if SPIN {
+        torque.fill(T::default());
+    }
 }
 
 /// What a deforming space does to its particles in one step.
@@ -255,7 +264,7 @@ fn follow<T: Real, G: Grains, const SPIN: bool>(
         let per_inertia = T::of(if SPIN { dt * grains.inverse_inertia(first + k) } else { 0.0 });
         let gain = [per_mass, per_mass, per_inertia, T::default()];
         let inverse_budget = body.position[3];
-        let (old, pull) = (body.velocity, force.force);
+        let (old, pull) = (body.velocity, force.numbers);
         let velocity: [T; 4] = std::array::from_fn(|c| faster(first + k, pull[c], gain[c], old[c]));
         body.velocity = velocity;
         let velocity = velocity.map(T::into);
@@ -267,7 +276,7 @@ fn follow<T: Real, G: Grains, const SPIN: bool>(
             let hurry = velocity[c].abs() * inverse_budget;
             rush[c] = if hurry > rush[c] { hurry } else { rush[c] };
         }
-        force.force = [T::default(); 4];
+        clear::<T, false>(force);
     }
     rush[0].max(rush[1])
 }
@@ -291,19 +300,16 @@ fn dragged<T: Real, G: Grains, const SPIN: bool>(
         let per_inertia = T::of(share * grains.inverse_inertia(first + k));
         let inverse_budget = body.position[3];
         for c in 0..3 {
-            body.velocity[c] = force.force[c].mul_add(per_mass, keep.mul(body.velocity[c]));
+            body.velocity[c] = force.numbers[c].mul_add(per_mass, keep.mul(body.velocity[c]));
             let velocity: f64 = body.velocity[c].into();
             body.position[c] = velocity.mul_add(dt, body.position[c]);
             let hurry = velocity.abs() * inverse_budget;
             rush = if hurry > rush { hurry } else { rush };
             if SPIN {
-                body.spin[c] = force.torque[c].mul_add(per_inertia, keep.mul(body.spin[c]));
+                body.spin[c] = force.numbers[T::TORQUE + c].mul_add(per_inertia, keep.mul(body.spin[c]));
             }
         }
-        force.force = [T::default(); 4];
-        if SPIN {
-            force.torque = [T::default(); 4];
-        }
+        clear::<T, SPIN>(force);
     }
     rush
 }

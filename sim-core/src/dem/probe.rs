@@ -53,10 +53,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                         (record::<S>(&contact), doubles::<S>(S::spin_record(contact.torque_a)));
                     let torque_b = doubles::<S>(S::spin_record(contact.torque_b));
                     for axis in 0..3 {
-                        probe.forces[a as usize].force[axis] += force[axis];
-                        probe.forces[b as usize].force[axis] -= force[axis];
-                        probe.forces[a as usize].torque[axis] += torque_a[axis];
-                        probe.forces[b as usize].torque[axis] += torque_b[axis];
+                        *probe.forces[a as usize].force_mut(axis) += force[axis];
+                        *probe.forces[b as usize].force_mut(axis) -= force[axis];
+                        *probe.forces[a as usize].torque_mut(axis) += torque_a[axis];
+                        *probe.forces[b as usize].torque_mut(axis) += torque_b[axis];
                     }
                     let attraction: f64 = contact.response.attraction.into();
                     let distant = self.law.range() > 0.0 && attraction > 0.0;
@@ -74,8 +74,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                     let (force, torque) =
                         (record::<S>(&contact), doubles::<S>(S::spin_record(contact.torque_a)));
                     for axis in 0..3 {
-                        probe.forces[a as usize].force[axis] += force[axis];
-                        probe.forces[a as usize].torque[axis] += torque[axis];
+                        *probe.forces[a as usize].force_mut(axis) += force[axis];
+                        *probe.forces[a as usize].torque_mut(axis) += torque[axis];
                     }
                     probe.wall_force[wall] += contact.response.normal.into();
                     if contact.overlap.into() > 0.0 {
@@ -131,8 +131,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             (half * self.grains.inverse_mass(slot), half * self.grains.inverse_inertia(slot));
         let (velocity, spin) = S::motion(body);
         (
-            std::array::from_fn(|k| keep * (velocity[k] + per_mass * force.force[k])),
-            std::array::from_fn(|k| keep * (spin[k] + per_inertia * force.torque[k])),
+            std::array::from_fn(|k| keep * (velocity[k] + per_mass * force.force()[k])),
+            std::array::from_fn(|k| keep * (spin[k] + per_inertia * force.torque()[k])),
         )
     }
 
@@ -165,8 +165,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             view.positions[particle] = point(body);
             view.velocities[particle] = velocity;
             view.spins[particle] = spin;
-            view.forces[particle] = std::array::from_fn(|k| forces[slot].force[k]);
-            view.torques[particle] = std::array::from_fn(|k| forces[slot].torque[k]);
+            view.forces[particle] = std::array::from_fn(|k| forces[slot].force()[k]);
+            view.torques[particle] = std::array::from_fn(|k| forces[slot].torque()[k]);
         }
         // Sums in original numbering: the same number whatever the order in memory.
         let energies = &mut view.energies;

@@ -129,9 +129,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                 let particles = &ghosts.particles[places.clone()];
                 for (&particle, ghost) in particles.iter().zip(&ghosts.forces[places.clone()]) {
                     let force = &mut *forces.add(particle as usize - start);
-                    // Whole rows, each read before it is written: then each is an operation or two.
-                    force.force = std::array::from_fn(|k| force.force[k].add(ghost.force[k]));
-                    force.torque = std::array::from_fn(|k| force.torque[k].add(ghost.torque[k]));
+                    // All of it is read before it is written: then a row is an operation or two.
+                    force.numbers = std::array::from_fn(|k| force.numbers[k].add(ghost.numbers[k]));
                 }
             }
             let bodies = std::slice::from_raw_parts_mut(bodies.add(start), end - start);

@@ -5,7 +5,7 @@
 //! be made after the features were detected).
 
 use std::arch::x86_64::{
-    __m256d, _CMP_LT_OQ, _mm256_add_pd, _mm256_and_pd, _mm256_andnot_pd, _mm256_blendv_pd, _mm256_cmp_pd,
+    __m128d, __m256d, _CMP_LT_OQ, _mm_add_pd, _mm_load_pd, _mm_store_pd, _mm256_castpd256_pd128, _mm256_extractf128_pd, _mm256_xor_pd, _mm256_add_pd, _mm256_and_pd, _mm256_andnot_pd, _mm256_blendv_pd, _mm256_cmp_pd,
     _mm256_div_pd, _mm256_fmadd_pd, _mm256_fnmadd_pd, _mm256_load_pd, _mm256_loadu_pd, _mm256_max_pd,
     _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_permute2f128_pd, _mm256_set1_pd, _mm256_setr_pd,
     _mm256_setzero_pd, _mm256_sqrt_pd, _mm256_store_pd, _mm256_storeu_pd, _mm256_sub_pd, _mm256_unpackhi_pd,
@@ -63,6 +63,45 @@ impl Avx2 {
                 _mm256_permute2f128_pd::<0x31>(lo_xy, lo_z),
                 _mm256_permute2f128_pd::<0x31>(hi_xy, hi_z),
             ]
+        }
+    }
+
+    /// Force and torque of four contacts, contact after contact: a row (F_x, F_y, F_z, M_x) and half a row (M_y, M_z).
+    #[inline(always)]
+    fn force_rows([x, y, z]: [Self; 3], [u, v, w]: [Self; 3]) -> ([__m256d; 4], [__m128d; 4]) {
+        // SAFETY: values of this type only exist where AVX2 was detected.
+        unsafe {
+            let (xy02, xy13) = (_mm256_unpacklo_pd(x.0, y.0), _mm256_unpackhi_pd(x.0, y.0));
+            let (zu02, zu13) = (_mm256_unpacklo_pd(z.0, u.0), _mm256_unpackhi_pd(z.0, u.0));
+            let (vw02, vw13) = (_mm256_unpacklo_pd(v.0, w.0), _mm256_unpackhi_pd(v.0, w.0));
+            (
+                [
+                    _mm256_permute2f128_pd::<0x20>(xy02, zu02),
+                    _mm256_permute2f128_pd::<0x20>(xy13, zu13),
+                    _mm256_permute2f128_pd::<0x31>(xy02, zu02),
+                    _mm256_permute2f128_pd::<0x31>(xy13, zu13),
+                ],
+                [
+                    _mm256_castpd256_pd128(vw02),
+                    _mm256_castpd256_pd128(vw13),
+                    _mm256_extractf128_pd::<1>(vw02),
+                    _mm256_extractf128_pd::<1>(vw13),
+                ],
+            )
+        }
+    }
+
+    /// Adds force and torque of one contact to a force.
+    ///
+    /// # Safety
+    /// `to` points to a writable force.
+    #[inline(always)]
+    unsafe fn add_row(to: *mut f64, row: __m256d, half: __m128d) {
+        // SAFETY: the caller vouches; a force is aligned.
+        unsafe {
+            _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), row));
+            let to = to.add(ROW);
+            _mm_store_pd(to, _mm_add_pd(_mm_load_pd(to), half));
         }
     }
 
@@ -307,13 +346,13 @@ impl Gather for Avx2 {
     }
     #[inline(always)]
     unsafe fn scatter<const FIELD: usize>(forces: *mut Force<f64>, at: *const u32, value: [Self; 3]) {
+        const { assert!(FIELD == 0, "torques are written with their forces") }
         let rows = Self::rows(value);
         // SAFETY: the caller vouches for the indices; a force is two aligned rows of four doubles.
         unsafe {
             for lane in 0..4 {
-                let row = rows[lane];
-                let to = forces.wrapping_add(*at.add(lane) as usize).cast::<f64>().add(FIELD * ROW);
-                _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), row));
+                let to = forces.wrapping_add(*at.add(lane) as usize).cast::<f64>();
+                _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), rows[lane]));
             }
         }
     }
@@ -326,6 +365,7 @@ impl Gather for Avx2 {
         value: [Self; 3],
         other: [Self; 3],
     ) {
+        const { assert!(FIELD == 0, "torques are written with their forces") }
         let rows = Self::rows(value);
         let others = if MODE == OTHER || MODE == MINUS { Self::rows(other) } else { rows };
         // SAFETY: the caller vouches for the indices; a force is two aligned rows of four doubles.
@@ -358,19 +398,28 @@ impl Gather for Avx2 {
         torque_a: [Self; 3],
         torque_b: [Self; 3],
     ) {
-        let (forces, torques_a) = (Self::rows(force), Self::rows(torque_a));
-        let torques_b = if MODE == OTHER { Self::rows(torque_b) } else { torques_a };
+        let (rows_a, halves_a) = Self::force_rows(force, torque_a);
+        let (rows_b, halves_b) =
+            if MODE == OTHER { Self::force_rows(force, torque_b) } else { (rows_a, halves_a) };
         // SAFETY: the caller vouches for the indices; a force is two aligned rows of four doubles.
         unsafe {
+            let minus = _mm256_setr_pd(-0.0, -0.0, -0.0, 0.0);
             for lane in 0..4 {
                 let to = of_a.wrapping_add(*a.add(lane) as usize).cast::<f64>();
-                _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), forces[lane]));
-                let to = to.add(ROW);
-                _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), torques_a[lane]));
+                Self::add_row(to, rows_a[lane], halves_a[lane]);
                 let to = of_b.wrapping_add(*b.add(lane) as usize).cast::<f64>();
-                _mm256_store_pd(to, _mm256_sub_pd(_mm256_load_pd(to), forces[lane]));
-                let to = to.add(ROW);
-                _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), torques_b[lane]));
+                Self::add_row(to, _mm256_xor_pd(rows_b[lane], minus), halves_b[lane]);
+            }
+        }
+    }
+    #[inline(always)]
+    unsafe fn scatter_both(forces: *mut Force<f64>, at: *const u32, force: [Self; 3], torque: [Self; 3]) {
+        let (rows, halves) = Self::force_rows(force, torque);
+        // SAFETY: as for `scatter`.
+        unsafe {
+            for lane in 0..4 {
+                let to = forces.wrapping_add(*at.add(lane) as usize).cast::<f64>();
+                Self::add_row(to, rows[lane], halves[lane]);
             }
         }
     }

@@ -417,5 +417,15 @@ impl Gather for Avx2Single {
                 _mm256_store_ps(to, _mm256_add_ps(_mm256_load_ps(to), on_b));
             }
         }
+    }    #[inline(always)]
+    unsafe fn scatter_both(forces: *mut Force<f32>, at: *const u32, force: [Self; 3], torque: [Self; 3]) {
+        let rows = Self::force_rows(force, torque);
+        // SAFETY: as for `scatter`.
+        unsafe {
+            for lane in 0..8 {
+                let to = forces.wrapping_add(*at.add(lane) as usize).cast::<f32>();
+                _mm256_store_ps(to, _mm256_add_ps(_mm256_load_ps(to), rows[lane]));
+            }
+        }
     }
 }

@@ -89,6 +89,16 @@ pub trait Gather: Lane {
         torque_a: [Self; 3],
         torque_b: [Self; 3],
     );
+    /// Adds force and torque to the forces of `at`.
+    ///
+    /// # Safety
+    /// As for [`Gather::scatter`].
+    unsafe fn scatter_both(
+        forces: *mut Force<Self::Scalar>,
+        at: *const u32,
+        force: [Self; 3],
+        torque: [Self; 3],
+    );
 }
 
 /// See [`Gather::scatter_pair`].

@@ -153,9 +153,9 @@ macro_rules! scalar {
             ) {
                 // SAFETY: the caller vouches for the index and for exclusive access.
                 let force = unsafe { &mut *forces.wrapping_add(*at as usize) };
-                let row = if FIELD == 0 { &mut force.force } else { &mut force.torque };
+                let first = if FIELD == 0 { 0 } else { Self::TORQUE };
                 for axis in 0..3 {
-                    row[axis] += value[axis];
+                    force.numbers[first + axis] += value[axis];
                 }
             }
             #[inline(always)]
@@ -193,6 +193,14 @@ macro_rules! scalar {
                 unsafe {
                     Self::scatter_pair::<0, OPPOSITE>(of_a, a, of_b, b, force, force);
                     Self::scatter_pair::<1, MODE>(of_a, a, of_b, b, torque_a, torque_b);
+                }
+            }
+            #[inline(always)]
+            unsafe fn scatter_both(forces: *mut Force<Self>, at: *const u32, force: [Self; 3], torque: [Self; 3]) {
+                // SAFETY: as for `scatter`.
+                unsafe {
+                    Self::scatter::<0>(forces, at, force);
+                    Self::scatter::<1>(forces, at, torque);
                 }
             }
         }

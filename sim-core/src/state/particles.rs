@@ -16,14 +16,34 @@ pub struct Body<T: Number> {
     pub spin: [T; 4],
 }
 
-/// Force and torque on one particle; fourth numbers are zero.
+/// Force and torque on one particle [k_n d, k_n d²].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(32))]
 pub struct Force<T: Number> {
-    /// Force [k_n d]; where space deforms (the plane) the third number is the torque [k_n d²].
-    pub force: [T; 4],
-    /// Torque [k_n d²].
-    pub torque: [T; 4],
+    /// F_x, F_y, F_z, the torque from [`Number::TORQUE`] on, zeros. Where space deforms (the plane) the third number is the
+    /// torque and nothing follows.
+    pub numbers: [T; 8],
+}
+
+impl<T: Number> Force<T> {
+    /// F [k_n d].
+    #[must_use]
+    pub fn force(&self) -> [T; 3] {
+        std::array::from_fn(|axis| self.numbers[axis])
+    }
+    /// M [k_n d²].
+    #[must_use]
+    pub fn torque(&self) -> [T; 3] {
+        std::array::from_fn(|axis| self.numbers[T::TORQUE + axis])
+    }
+    /// One component of F, to write.
+    pub fn force_mut(&mut self, axis: usize) -> &mut T {
+        &mut self.numbers[axis]
+    }
+    /// One component of M, to write.
+    pub fn torque_mut(&mut self, axis: usize) -> &mut T {
+        &mut self.numbers[T::TORQUE + axis]
+    }
 }
 
 /// Sizes and masses of the particles.

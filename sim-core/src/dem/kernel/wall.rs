@@ -195,9 +195,11 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         let mut lanes = [S::Real::default(); WIDEST];
         // SAFETY: the caller vouches for indices and forces; no bundle is wider than the lanes.
         unsafe {
-            L::scatter::<0>(self.forces, a, S::vector_record(contact.force));
+            let force = S::vector_record(contact.force);
             if C::NEEDS_SPIN {
-                L::scatter::<1>(self.forces, a, S::spin_record(contact.torque_a));
+                L::scatter_both(self.forces, a, force, S::spin_record(contact.torque_a));
+            } else {
+                L::scatter::<0>(self.forces, a, force);
             }
             contact.response.normal.store(lanes.as_mut_ptr());
         }
