@@ -12,4 +12,4 @@ mod order;
 #[cfg(test)]
 pub use all_pairs::all_pairs;
 pub use cell_list::{CellList, near_pairs};
-pub use order::spatial_order;
+pub use order::{hilbert_order, morton_order};

@@ -4,7 +4,7 @@ use super::engine::Dem;
 use crate::boundary::Boundary;
 use crate::contact::ContactLaw;
 use crate::lane::Number;
-use crate::neighbour::spatial_order;
+use crate::neighbour::{hilbert_order, morton_order};
 use crate::space::Space;
 use crate::state::{Body, ContactList, Grains};
 
@@ -91,7 +91,9 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                 body.position[..3].copy_from_slice(&inside);
             }
         }
-        let order = spatial_order(self.len(), |slot| point(&self.bodies[slot]));
+        let at = |slot: usize| point(&self.bodies[slot]);
+        let order =
+            if S::DIMENSION == 3 { hilbert_order(self.len(), at) } else { morton_order(self.len(), at) };
         let mut slot_of = vec![0_u32; self.len()];
         for (slot, &old) in (0_u32..).zip(&order) {
             slot_of[old as usize] = slot;

@@ -14,7 +14,7 @@ use crate::equilibrium::sample::Sample;
 use crate::{Options, Progress, SimError, Simulation};
 
 /// Version of the checkpoint of a run.
-const CHECKPOINT_VERSION: u32 = 3;
+const CHECKPOINT_VERSION: u32 = 4;
 /// Steps between looks where the scene gives a daring time step.
 const DARING_EVERY: u64 = 10;
 /// Given time step beyond which a run is looked at that often [τ]. Jammed networks have critical steps of 0.2 to 0.3 τ,
