@@ -13,6 +13,7 @@ mod lists;
 mod motion;
 mod persist;
 mod probe;
+mod prolong;
 mod refresh;
 mod spheres;
 mod step;

@@ -259,7 +259,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dynamics for Dem<S, 
         }
         let mut bytes = self.bodies.capacity() * size_of::<Body<S::Real>>()
             + self.forces.capacity() * size_of::<Force<S::Real>>()
-            + self.lists.near_at.capacity() * size_of::<[f64; 3]>()
+            + (self.lists.near_at.capacity() + self.lists.listed_at.capacity()) * size_of::<[f64; 3]>()
             + self.lists.budget.capacity() * size_of::<f64>()
             + self.lists.cells.bytes();
         for chunk in &self.chunks {

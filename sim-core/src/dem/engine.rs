@@ -50,6 +50,11 @@ pub struct Dem<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
 pub(super) struct Lists {
     /// Positions when the near pairs were found [d].
     pub near_at: Vec<[f64; 3]>,
+    /// Near pairs by their higher index: where those of a particle start, and the lower indices; empty until somebody asks.
+    pub near_below: (Vec<u32>, Vec<u32>),
+    /// Positions of particles and walls where their budgets begin: at the last refresh, or when they got a new one [d].
+    pub listed_at: Vec<[f64; 3]>,
+    pub walls_at: [f64; 6],
     /// Displacement each particle may make before the next refresh [d], by slot.
     pub budget: Vec<f64>,
     /// Least of them [d].

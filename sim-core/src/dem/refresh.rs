@@ -13,7 +13,7 @@ use crate::state::{Body, Chunk, Grains};
 
 /// Smallest and largest displacement budget of a particle between two refreshes [d].
 const LEAST_BUDGET: f64 = 4e-4;
-const MOST_BUDGET: f64 = 0.5 * NEAR_MARGIN;
+pub(super) const MOST_BUDGET: f64 = 0.5 * NEAR_MARGIN;
 
 /// Least speed a particle has a budget for, in mean speeds: in a violent state a slow particle that is hit would otherwise use
 /// up its budget within a step.
@@ -23,7 +23,7 @@ const LEAST_SPEED: f64 = 0.6;
 const STEPS_PER_REFRESH: (f64, f64) = (6.0, 120.0);
 
 /// Bodies and budgets of a chunk, and the chunk.
-type Parts<'a, T> = (&'a mut [Body<T>], &'a mut [f64], &'a mut Chunk<T>);
+pub(super) type Parts<'a, T> = (&'a mut [Body<T>], &'a mut [f64], &'a mut Chunk<T>);
 
 impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     /// Gives every particle and wall a displacement budget for the coming steps and lists the pairs that may touch
@@ -64,6 +64,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         let count = self.len();
         self.lists.refreshes += 1;
         self.lists.budget.resize(count, 0.0);
+        self.lists.listed_at.resize(count, [f64::NAN; 3]);
+        if let Some(walls) = &self.walls {
+            self.lists.walls_at = walls.position;
+        }
     }
 
     /// Speeds of the particles of a chunk, into their budgets, and their sum.
@@ -111,8 +115,11 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             let (bodies, budget, own) = Self::parts(dem, chunk);
             let (boundary, lists) = (&(*dem).boundary, &(*dem).lists);
             let near_at = &lists.near_at[own.start..own.end];
+            let listed_at = lists.listed_at.as_ptr().cast_mut().add(own.start);
+            let listed_at = std::slice::from_raw_parts_mut(listed_at, near_at.len());
             let mut stay = true;
-            for ((body, budget), from) in bodies.iter_mut().zip(budget).zip(near_at) {
+            for (((body, budget), from), at) in bodies.iter_mut().zip(budget).zip(near_at).zip(listed_at) {
+                *at = point(body);
                 *budget = budget_of(*budget, lists.horizon).max(lists.least_budget);
                 body.position[3] = 1.0 / *budget;
                 let from = boundary.since_mark(*from);
@@ -181,7 +188,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     ///
     /// # Safety
     /// The caller has this chunk to itself.
-    unsafe fn parts<'a>(dem: *mut Self, chunk: usize) -> Parts<'a, S::Real> {
+    pub(super) unsafe fn parts<'a>(dem: *mut Self, chunk: usize) -> Parts<'a, S::Real> {
         // SAFETY: the caller vouches; chunks do not overlap.
         unsafe {
             let shared = &*dem;
@@ -202,6 +209,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         self.lists.rebuilds += 1;
         let bodies = &self.bodies;
         self.lists.near_at = bodies.iter().map(point).collect();
+        self.lists.near_below.0.clear();
         let reach = 2.0 * NEAR_MARGIN + self.law.range();
         let size = 2.0 * self.grains.largest_radius() + reach;
         self.boundary.mark();

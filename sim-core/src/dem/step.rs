@@ -91,7 +91,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                 }
             });
             if !crew.stopped() && (*dem).lists.due {
-                Self::refresh_together(dem, crew, thread);
+                Self::refresh_if_due(dem, crew, thread);
             }
         }
     }

@@ -61,6 +61,8 @@ pub struct Chunk<T: Number> {
     pub strayed: bool,
     /// Scratch: the near pairs that may touch, inside the chunk and to later ones.
     pub selected: [Vec<(u32, u32)>; 2],
+    /// Scratch: particles that have used up much of their budget.
+    pub spenders: Vec<u32>,
     /// Scratch: particles that may touch a wall.
     pub outermost: Vec<u32>,
     /// Storage for the next lists, swapped at a refresh.
@@ -91,7 +93,7 @@ impl<T: Number> Chunk<T> {
             + self.walls.iter().map(ContactList::bytes).sum::<usize>()
             + self.near.capacity() * size_of::<(u32, u32)>()
             + self.selected.iter().map(Vec::capacity).sum::<usize>() * size_of::<(u32, u32)>()
-            + self.outermost.capacity() * size_of::<u32>()
+            + (self.outermost.capacity() + self.spenders.capacity()) * size_of::<u32>()
             + self.ghosts.forces.capacity() * size_of::<Force<T>>()
             + (self.ghosts.particles.capacity() + self.ghosts.targets.capacity()) * size_of::<u32>()
     }

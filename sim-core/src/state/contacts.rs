@@ -58,6 +58,17 @@ impl<T: Number> ContactList<T> {
         (self.indices[at], self.indices[at + Self::GROUP])
     }
 
+    /// Whether a pair is in the list.
+    #[must_use]
+    pub fn contains(&self, pair: (u32, u32)) -> bool {
+        let (mut low, mut high) = (0, self.count);
+        while low < high {
+            let middle = usize::midpoint(low, high);
+            if self.pair(middle) < pair { low = middle + 1 } else { high = middle }
+        }
+        low < self.count && self.pair(low) == pair
+    }
+
     /// One number of the memory of pair `k`.
     #[must_use]
     pub fn slot(&self, k: usize, slot: usize) -> T {
