@@ -8,5 +8,5 @@ use serde_json::json;
 fn keys_do_not_change_by_accident() {
     let spheres =
         json!({"model": "cohesive_spheres", "n": 2207, "p": 1e5, "sigma_e": 1e10, "sigma_c": 3e6, "seed": 1});
-    assert_eq!(Scene::from_json(&spheres).unwrap().key().as_str(), "0d720d6ae4727f65d5b52462075a8f70");
+    assert_eq!(Scene::from_json(&spheres).unwrap().key().as_str(), "1c19712310bf3ca2336f1f7dfb13cdec");
 }

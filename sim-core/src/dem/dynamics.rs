@@ -178,6 +178,8 @@ pub struct Counters {
     pub rebuilds: u64,
     /// Refreshes of the force pass list so far in this process.
     pub refreshes: u64,
+    /// Refreshes put off so far, because new budgets for some particles did.
+    pub prolonged: u64,
     /// Threads used.
     pub threads: u64,
     /// Bytes of the state and its lists.
@@ -250,6 +252,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dynamics for Dem<S, 
             particles: self.bodies.len() as u64,
             rebuilds: self.lists.rebuilds,
             refreshes: self.lists.refreshes,
+            prolonged: self.lists.prolonged,
             threads: self.threads as u64,
             ..Counters::default()
         };

@@ -74,6 +74,7 @@ pub(super) struct Lists {
     pub cells: CellList,
     pub rebuilds: u64,
     pub refreshes: u64,
+    pub prolonged: u64,
 }
 
 impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
@@ -173,7 +174,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
 
     /// Where the forces of the particles of a chunk are while a thread works on it.
     pub(super) fn forces_of(&self, chunk: usize, thread: usize) -> *mut Force<S::Real> {
-        let first = if B::DEFORMS { self.chunks[chunk].start } else { self.forces.len() / self.threads * thread };
+        let first =
+            if B::DEFORMS { self.chunks[chunk].start } else { self.forces.len() / self.threads * thread };
         self.forces.as_ptr().cast_mut().wrapping_add(first)
     }
 

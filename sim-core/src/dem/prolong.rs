@@ -48,12 +48,14 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             let listed_at = &(*dem).lists.listed_at;
             let (bodies, _, own) = Self::parts(dem, chunk);
             own.spenders.clear();
-            for ((body, from), particle) in bodies.iter().zip(&listed_at[own.start..own.end]).zip(own.start..) {
+            for ((body, from), particle) in bodies.iter().zip(&listed_at[own.start..own.end]).zip(own.start..)
+            {
                 let [x, y, z, inverse_budget] = body.position;
                 let [dx, dy, dz] = [x - from[0], y - from[1], z - from[2]];
                 let share = (dx * dx + dy * dy + dz * dz) * (inverse_budget * inverse_budget);
-                // Written so that a NaN is noticed.
-                if !(share < SPENT * SPENT) {
+                // Written so that a NaN has spent its budget.
+                let keeps = share < SPENT * SPENT;
+                if !keeps {
                     own.spenders.push(particle as u32);
                 }
             }
@@ -79,6 +81,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             });
         self.lists.used = SPENT;
         self.lists.due = !keeps;
+        self.lists.prolonged += u64::from(keeps);
     }
 
     /// Gives a particle of a chunk a budget from where it is, twice the old one or as large; whether all that it may touch with it
@@ -86,7 +89,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     fn renew_budget(&mut self, chunk: usize, particle: u32) -> bool {
         let i = particle as usize;
         let old = self.lists.budget[i];
-        let Some(budget) = [2.0 * old, old].into_iter().find(|&budget| self.covers(chunk, particle, budget)) else {
+        let Some(budget) = [2.0 * old, old].into_iter().find(|&budget| self.covers(chunk, particle, budget))
+        else {
             return false;
         };
         self.lists.budget[i] = budget;
@@ -104,7 +108,9 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         let x = point(&self.bodies[i]);
         let gone: f64 = (0..3).map(|k| (x[k] - lists.near_at[i][k]).powi(2)).sum();
         let room = lists.margin - budget;
-        if budget > MOST_BUDGET || room <= 0.0 || !(gone < room * room) {
+        // As at a refresh: written so that a NaN strays.
+        let stays = budget <= MOST_BUDGET && room > 0.0 && gone < room * room;
+        if !stays {
             return false;
         }
         let reach = self.grains.radius(i) + budget + lists.strain_budget + self.law.range();
@@ -124,7 +130,9 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         let above = above[above.partition_point(|pair| pair.0 < particle)..].iter();
         let (starts, below) = &lists.near_below;
         let mut below = below[starts[i] as usize..starts[i + 1] as usize].iter();
-        let pairs_covered = above.take_while(|pair| pair.0 == particle).all(|&(_, b)| !may_touch(b) || listed(particle, b, chunk))
+        let pairs_covered = above
+            .take_while(|pair| pair.0 == particle)
+            .all(|&(_, b)| !may_touch(b) || listed(particle, b, chunk))
             && below.all(|&a| {
                 let owner = self.chunks.partition_point(|chunk| chunk.end <= a as usize);
                 !may_touch(a) || listed(a, particle, owner)

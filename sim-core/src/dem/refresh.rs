@@ -175,7 +175,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             let (earlier, later) = self.chunks.split_at_mut(c + 1);
             let (particles, mut from) = (&earlier[c].ghosts.particles, 0);
             for target in later {
-                let to = from + particles[from..].partition_point(|&particle| (particle as usize) < target.end);
+                let to =
+                    from + particles[from..].partition_point(|&particle| (particle as usize) < target.end);
                 if from < to {
                     target.incoming.push((c, from..to));
                 }

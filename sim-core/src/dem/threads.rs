@@ -71,9 +71,7 @@ impl Crew {
     pub(super) fn share(&self, thread: usize, chunks: usize) -> impl Iterator<Item = usize> + Clone + use<> {
         let threads = self.threads;
         (0..chunks.div_ceil(threads))
-            .map(move |round| {
-                round * threads + if round % 2 == 0 { thread } else { threads - 1 - thread }
-            })
+            .map(move |round| round * threads + if round % 2 == 0 { thread } else { threads - 1 - thread })
             .filter(move |&chunk| chunk < chunks)
     }
 

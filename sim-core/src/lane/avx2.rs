@@ -5,11 +5,12 @@
 //! be made after the features were detected).
 
 use std::arch::x86_64::{
-    __m128d, __m256d, _CMP_LT_OQ, _mm_add_pd, _mm_load_pd, _mm_store_pd, _mm256_castpd256_pd128, _mm256_extractf128_pd, _mm256_xor_pd, _mm256_add_pd, _mm256_and_pd, _mm256_andnot_pd, _mm256_blendv_pd, _mm256_cmp_pd,
-    _mm256_div_pd, _mm256_fmadd_pd, _mm256_fnmadd_pd, _mm256_load_pd, _mm256_loadu_pd, _mm256_max_pd,
+    __m128d, __m256d, _CMP_LT_OQ, _mm_add_pd, _mm_load_pd, _mm_store_pd, _mm256_add_pd, _mm256_and_pd,
+    _mm256_andnot_pd, _mm256_blendv_pd, _mm256_castpd256_pd128, _mm256_cmp_pd, _mm256_div_pd,
+    _mm256_extractf128_pd, _mm256_fmadd_pd, _mm256_fnmadd_pd, _mm256_load_pd, _mm256_loadu_pd, _mm256_max_pd,
     _mm256_min_pd, _mm256_movemask_pd, _mm256_mul_pd, _mm256_permute2f128_pd, _mm256_set1_pd, _mm256_setr_pd,
     _mm256_setzero_pd, _mm256_sqrt_pd, _mm256_store_pd, _mm256_storeu_pd, _mm256_sub_pd, _mm256_unpackhi_pd,
-    _mm256_unpacklo_pd,
+    _mm256_unpacklo_pd, _mm256_xor_pd,
 };
 
 use super::{Gather, Lane, MINUS, Number, OPPOSITE, OTHER};

@@ -417,7 +417,8 @@ impl Gather for Avx2Single {
                 _mm256_store_ps(to, _mm256_add_ps(_mm256_load_ps(to), on_b));
             }
         }
-    }    #[inline(always)]
+    }
+    #[inline(always)]
     unsafe fn scatter_both(forces: *mut Force<f32>, at: *const u32, force: [Self; 3], torque: [Self; 3]) {
         let rows = Self::force_rows(force, torque);
         // SAFETY: as for `scatter`.

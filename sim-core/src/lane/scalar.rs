@@ -196,7 +196,12 @@ macro_rules! scalar {
                 }
             }
             #[inline(always)]
-            unsafe fn scatter_both(forces: *mut Force<Self>, at: *const u32, force: [Self; 3], torque: [Self; 3]) {
+            unsafe fn scatter_both(
+                forces: *mut Force<Self>,
+                at: *const u32,
+                force: [Self; 3],
+                torque: [Self; 3],
+            ) {
                 // SAFETY: as for `scatter`.
                 unsafe {
                     Self::scatter::<0>(forces, at, force);

@@ -49,8 +49,7 @@ pub fn morton_order(count: usize, position: impl Fn(usize) -> [f64; 3]) -> Vec<u
 
 /// The order by place on a curve, ties by index.
 fn ordered(count: usize, place: impl Fn(usize) -> u64) -> Vec<u32> {
-    let mut keyed: Vec<(u64, u32)> =
-        (0..count).map(|particle| (place(particle), particle as u32)).collect();
+    let mut keyed: Vec<(u64, u32)> = (0..count).map(|particle| (place(particle), particle as u32)).collect();
     keyed.sort_unstable();
     keyed.into_iter().map(|(_, particle)| particle).collect()
 }
@@ -131,10 +130,12 @@ mod tests {
 
     #[test]
     fn orders_are_permutations_whatever_the_positions() {
-        for positions in [vec![], vec![[0.3; 3]], vec![[1.0, 2.0, 3.0]; 5], vec![[0.0; 3], [1e9, 0.0, -1e9]]] {
-            for order in
-                [hilbert_order(positions.len(), |i| positions[i]), morton_order(positions.len(), |i| positions[i])]
-            {
+        for positions in [vec![], vec![[0.3; 3]], vec![[1.0, 2.0, 3.0]; 5], vec![[0.0; 3], [1e9, 0.0, -1e9]]]
+        {
+            for order in [
+                hilbert_order(positions.len(), |i| positions[i]),
+                morton_order(positions.len(), |i| positions[i]),
+            ] {
                 let mut sorted = order.clone();
                 sorted.sort_unstable();
                 assert_eq!(sorted, (0..positions.len() as u32).collect::<Vec<u32>>());
@@ -144,8 +145,7 @@ mod tests {
 
     #[test]
     fn the_order_of_the_plane_keeps_cells_together() {
-        let positions: Vec<[f64; 3]> =
-            (0..64).map(|k| [f64::from(k % 8), f64::from(k / 8), 0.0]).collect();
+        let positions: Vec<[f64; 3]> = (0..64).map(|k| [f64::from(k % 8), f64::from(k / 8), 0.0]).collect();
         let order = morton_order(positions.len(), |i| positions[i]);
         // Four consecutive cells are a square of two.
         for block in order.chunks(4) {

@@ -69,7 +69,13 @@ impl<S: Space, L: Gather> Evaluated<S, L> {
     pub(super) fn keep(self, mask: L::Mask) -> Self {
         let (force, response) = (self.force.keep(mask), self.response);
         let (torque_a, torque_b) = (self.torque_a.keep(mask), self.torque_b.keep(mask));
-        Self { force, torque_a, torque_b, response: Response { normal: response.normal.keep(mask), ..response }, ..self }
+        Self {
+            force,
+            torque_a,
+            torque_b,
+            response: Response { normal: response.normal.keep(mask), ..response },
+            ..self
+        }
     }
 }
 
