@@ -129,7 +129,7 @@ pub trait Lane: Copy {
     /// A mask that holds for the first `count` numbers.
     #[inline(always)]
     fn first(count: usize) -> Self::Mask {
-        let places: [Self::Scalar; WIDEST] = std::array::from_fn(|place| Self::Scalar::of(place as f64));
+        let places: [Self::Scalar; WIDEST] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0].map(Self::Scalar::of);
         // SAFETY: no bundle is wider.
         unsafe { Self::load(places.as_ptr()) }.less(Self::splat(count as f64))
     }

@@ -90,13 +90,8 @@ impl<R: Real> Boundary<Planar<R>> for PeriodicCell {
 
     #[inline(always)]
     fn nearest<L: Lane>(&self, separation: V2<L>) -> V2<L> {
-        let image = |axis: usize| {
-            let (edge, inverse) = (self.edges[axis], 1.0 / self.edges[axis]);
-            let along = separation.0[axis];
-            let crossings = along.mul_add(L::splat(inverse), L::splat(ROUND)).sub(L::splat(ROUND));
-            crossings.neg_mul_add(L::splat(edge), along)
-        };
-        V2([image(0), image(1)])
+        let [x, y] = separation.0;
+        V2([nearest_along(x, self.edges[0]), nearest_along(y, self.edges[1])])
     }
     #[inline(always)]
     fn carried<L: Lane>(&self, separation: V2<L>, velocity: V2<L>) -> V2<L> {
@@ -182,6 +177,13 @@ impl<R: Real> Boundary<Planar<R>> for PeriodicCell {
             )
         })
     }
+}
+
+/// The nearest image along one edge. No closure: one that is not inlined makes a call of every vector instruction.
+#[inline(always)]
+fn nearest_along<L: Lane>(along: L, edge: f64) -> L {
+    let crossings = along.mul_add(L::splat(1.0 / edge), L::splat(ROUND)).sub(L::splat(ROUND));
+    crossings.neg_mul_add(L::splat(edge), along)
 }
 
 #[cfg(test)]

@@ -65,6 +65,8 @@ pub(super) struct Lists {
     pub strain_budget: f64,
     /// Largest share of a budget that may be used up.
     pub used: f64,
+    /// Largest share of a budget used up in the last step.
+    pub pace: f64,
     /// Time for which a particle of steady speed keeps within its budget [τ].
     pub horizon: f64,
     /// Distance a particle may have gone since the near pairs were found, less budgets [d].

@@ -136,7 +136,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             return rest;
         }
         // Exact sums: any order gives the same bits.
-        std::array::from_fn(|axis| rest[axis] + wide_sum(virial[axis]))
+        [rest[0] + wide_sum(virial[0]), rest[1] + wide_sum(virial[1])]
     }
 
     /// Groups `first..first + count`, part by part.

@@ -70,8 +70,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                 way < SPENT * self.lists.wall_budget[wall]
             })
         });
+        // A pair still apart by half a step's travel has a share of the step in contact: lists must reach as far beyond what
+        // has been used, which is less than half a budget of a particle that keeps its own and nothing of a new one.
+        let in_reach = SPENT + 0.5 * self.lists.pace < 1.0;
         let few = self.chunks.iter().all(|chunk| chunk.spenders.len() <= MOST_SPENDERS);
         let keeps = walls_keep
+            && in_reach
             && few
             && (0..self.chunks.len()).all(|chunk| {
                 let spenders = std::mem::take(&mut self.chunks[chunk].spenders);

@@ -196,11 +196,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         if self.step.is_multiple_of(LOOK_EVERY) {
             self.look()?;
         }
-        self.lists.used += rush * dt;
+        self.lists.pace = rush * dt;
+        self.lists.used += self.lists.pace;
         if self.step.is_multiple_of(SORT_EVERY) {
             self.look()?;
             self.sort();
-        } else if self.lists.used + 0.5 * rush * dt >= 1.0 {
+        } else if self.lists.used + 0.5 * self.lists.pace >= 1.0 {
             // The half step: a pair still apart by half a step's travel already has a share of the step in contact.
             if rush.is_finite() {
                 self.lists.due = true;
