@@ -264,6 +264,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dynamics for Dem<S, 
             + self.forces.capacity() * size_of::<Force<S::Real>>()
             + (self.lists.near_at.capacity() + self.lists.listed_at.capacity()) * size_of::<[f64; 3]>()
             + self.lists.budget.capacity() * size_of::<f64>()
+            + (self.lists.near_below.0.capacity() + self.lists.near_below.1.capacity()) * size_of::<u32>()
             + self.lists.cells.bytes();
         for chunk in &self.chunks {
             if C::SLOTS > 0 {

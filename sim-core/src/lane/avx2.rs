@@ -13,7 +13,7 @@ use std::arch::x86_64::{
     _mm256_unpacklo_pd, _mm256_xor_pd,
 };
 
-use super::{Gather, Lane, MINUS, Number, OPPOSITE, OTHER};
+use super::{Gather, Lane, MINUS, Number, OTHER};
 use crate::state::{Body, Force};
 
 /// Four doubles in one register.
@@ -346,8 +346,7 @@ impl Gather for Avx2 {
         unsafe { Self::row_of::<f64, FIELD>(bodies, a) }
     }
     #[inline(always)]
-    unsafe fn scatter<const FIELD: usize>(forces: *mut Force<f64>, at: *const u32, value: [Self; 3]) {
-        const { assert!(FIELD == 0, "torques are written with their forces") }
+    unsafe fn scatter(forces: *mut Force<f64>, at: *const u32, value: [Self; 3]) {
         let rows = Self::rows(value);
         // SAFETY: the caller vouches for the indices; a force is two aligned rows of four doubles.
         unsafe {
@@ -358,7 +357,7 @@ impl Gather for Avx2 {
         }
     }
     #[inline(always)]
-    unsafe fn scatter_pair<const FIELD: usize, const MODE: u8>(
+    unsafe fn scatter_pair<const MODE: u8>(
         of_a: *mut Force<f64>,
         a: *const u32,
         of_b: *mut Force<f64>,
@@ -366,26 +365,16 @@ impl Gather for Avx2 {
         value: [Self; 3],
         other: [Self; 3],
     ) {
-        const { assert!(FIELD == 0, "torques are written with their forces") }
         let rows = Self::rows(value);
-        let others = if MODE == OTHER || MODE == MINUS { Self::rows(other) } else { rows };
+        let others = if MODE == MINUS { Self::rows(other) } else { rows };
         // SAFETY: the caller vouches for the indices; a force is two aligned rows of four doubles.
         unsafe {
             for lane in 0..4 {
                 let row = rows[lane];
-                let to = of_a.wrapping_add(*a.add(lane) as usize).cast::<f64>().add(FIELD * ROW);
+                let to = of_a.wrapping_add(*a.add(lane) as usize).cast::<f64>();
                 _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), row));
-                let to = of_b.wrapping_add(*b.add(lane) as usize).cast::<f64>().add(FIELD * ROW);
-                let sum = _mm256_load_pd(to);
-                let on_b = others[lane];
-                _mm256_store_pd(
-                    to,
-                    if MODE == OPPOSITE || MODE == MINUS {
-                        _mm256_sub_pd(sum, on_b)
-                    } else {
-                        _mm256_add_pd(sum, on_b)
-                    },
-                );
+                let to = of_b.wrapping_add(*b.add(lane) as usize).cast::<f64>();
+                _mm256_store_pd(to, _mm256_sub_pd(_mm256_load_pd(to), others[lane]));
             }
         }
     }

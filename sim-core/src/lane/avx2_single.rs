@@ -13,7 +13,7 @@ use std::arch::x86_64::{
     _mm256_unpacklo_ps, _mm256_xor_ps,
 };
 
-use super::{Avx2, Gather, Lane, MINUS, OPPOSITE, OTHER, Two};
+use super::{Avx2, Gather, Lane, MINUS, OTHER, Two};
 use crate::state::{Body, Force};
 
 /// Eight floats in one register.
@@ -355,18 +355,18 @@ impl Gather for Avx2Single {
     }
 
     #[inline(always)]
-    unsafe fn scatter<const FIELD: usize>(forces: *mut Force<f32>, at: *const u32, value: [Self; 3]) {
+    unsafe fn scatter(forces: *mut Force<f32>, at: *const u32, value: [Self; 3]) {
         // SAFETY: the caller vouches for the indices; a force is two rows of four floats.
         unsafe {
             let rows = Self::records(value);
             for lane in 0..8 {
-                let to = forces.wrapping_add(*at.add(lane) as usize).cast::<f32>().add(FIELD * 4);
+                let to = forces.wrapping_add(*at.add(lane) as usize).cast::<f32>();
                 _mm_store_ps(to, _mm_add_ps(_mm_load_ps(to), rows[lane]));
             }
         }
     }
     #[inline(always)]
-    unsafe fn scatter_pair<const FIELD: usize, const MODE: u8>(
+    unsafe fn scatter_pair<const MODE: u8>(
         of_a: *mut Force<f32>,
         a: *const u32,
         of_b: *mut Force<f32>,
@@ -375,22 +375,14 @@ impl Gather for Avx2Single {
         other: [Self; 3],
     ) {
         let rows = Self::records(value);
-        let others = if MODE == OTHER || MODE == MINUS { Self::records(other) } else { rows };
+        let others = if MODE == MINUS { Self::records(other) } else { rows };
         // SAFETY: as for `scatter`.
         unsafe {
             for lane in 0..8 {
-                let to = of_a.wrapping_add(*a.add(lane) as usize).cast::<f32>().add(FIELD * 4);
+                let to = of_a.wrapping_add(*a.add(lane) as usize).cast::<f32>();
                 _mm_store_ps(to, _mm_add_ps(_mm_load_ps(to), rows[lane]));
-                let to = of_b.wrapping_add(*b.add(lane) as usize).cast::<f32>().add(FIELD * 4);
-                let sum = _mm_load_ps(to);
-                _mm_store_ps(
-                    to,
-                    if MODE == OPPOSITE || MODE == MINUS {
-                        _mm_sub_ps(sum, others[lane])
-                    } else {
-                        _mm_add_ps(sum, others[lane])
-                    },
-                );
+                let to = of_b.wrapping_add(*b.add(lane) as usize).cast::<f32>();
+                _mm_store_ps(to, _mm_sub_ps(_mm_load_ps(to), others[lane]));
             }
         }
     }

@@ -57,17 +57,17 @@ pub trait Gather: Lane {
     /// # Safety
     /// As for [`Gather::difference`].
     unsafe fn record<const FIELD: usize>(bodies: *const Body<Self::Scalar>, a: *const u32) -> [Self; 3];
-    /// Adds to one record of a force, lane after lane: `FIELD` 0 is the force, 1 the torque.
+    /// Adds to the first row of forces, lane after lane.
     ///
     /// # Safety
     /// `at` points to `WIDTH` indices of writable forces.
-    unsafe fn scatter<const FIELD: usize>(forces: *mut Force<Self::Scalar>, at: *const u32, value: [Self; 3]);
-    /// Adds `value` to the force (`FIELD` 0) or torque (1) of `a` and, lane after lane, subtracts it from that of `b`
-    /// (`MODE` [`OPPOSITE`]), adds it ([`SAME`]), adds `other` ([`OTHER`]) or subtracts `other` ([`MINUS`]).
+    unsafe fn scatter(forces: *mut Force<Self::Scalar>, at: *const u32, value: [Self; 3]);
+    /// Adds `value` to the first row of the forces of `a` and, lane after lane, subtracts it (`MODE` [`OPPOSITE`]) or `other`
+    /// ([`MINUS`]) from that of `b`.
     ///
     /// # Safety
     /// `a` and `b` point to `WIDTH` indices of writable forces in `of_a` and `of_b`.
-    unsafe fn scatter_pair<const FIELD: usize, const MODE: u8>(
+    unsafe fn scatter_pair<const MODE: u8>(
         of_a: *mut Force<Self::Scalar>,
         a: *const u32,
         of_b: *mut Force<Self::Scalar>,
@@ -103,9 +103,9 @@ pub trait Gather: Lane {
 
 /// See [`Gather::scatter_pair`].
 pub const OPPOSITE: u8 = 0;
-/// See [`Gather::scatter_pair`].
+/// See [`Gather::scatter_contact`].
 pub const SAME: u8 = 1;
-/// See [`Gather::scatter_pair`].
+/// See [`Gather::scatter_contact`].
 pub const OTHER: u8 = 2;
 /// See [`Gather::scatter_pair`].
 pub const MINUS: u8 = 3;

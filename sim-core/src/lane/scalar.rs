@@ -1,6 +1,6 @@
 //! One number at a time: the plain path, lane for lane the arithmetic of the vector path.
 
-use super::{Gather, Lane, MINUS, Number, OPPOSITE, Real, SAME};
+use super::{Gather, Lane, MINUS, Number, OTHER, Real};
 use crate::state::{Body, Force};
 
 macro_rules! scalar {
@@ -146,20 +146,15 @@ macro_rules! scalar {
                 [row[0], row[1], row[2]]
             }
             #[inline(always)]
-            unsafe fn scatter<const FIELD: usize>(
-                forces: *mut Force<Self>,
-                at: *const u32,
-                value: [Self; 3],
-            ) {
+            unsafe fn scatter(forces: *mut Force<Self>, at: *const u32, value: [Self; 3]) {
                 // SAFETY: the caller vouches for the index and for exclusive access.
                 let force = unsafe { &mut *forces.wrapping_add(*at as usize) };
-                let first = if FIELD == 0 { 0 } else { Self::TORQUE };
                 for axis in 0..3 {
-                    force.numbers[first + axis] += value[axis];
+                    force.numbers[axis] += value[axis];
                 }
             }
             #[inline(always)]
-            unsafe fn scatter_pair<const FIELD: usize, const MODE: u8>(
+            unsafe fn scatter_pair<const MODE: u8>(
                 of_a: *mut Force<Self>,
                 a: *const u32,
                 of_b: *mut Force<Self>,
@@ -167,16 +162,11 @@ macro_rules! scalar {
                 value: [Self; 3],
                 other: [Self; 3],
             ) {
-                let on_b = match MODE {
-                    OPPOSITE => [-value[0], -value[1], -value[2]],
-                    SAME => value,
-                    MINUS => [-other[0], -other[1], -other[2]],
-                    _ => other,
-                };
+                let [x, y, z] = if MODE == MINUS { other } else { value };
                 // SAFETY: the caller vouches for the indices; the two references do not live at the same time.
                 unsafe {
-                    Self::scatter::<FIELD>(of_a, a, value);
-                    Self::scatter::<FIELD>(of_b, b, on_b);
+                    Self::scatter(of_a, a, value);
+                    Self::scatter(of_b, b, [-x, -y, -z]);
                 }
             }
             #[inline(always)]
@@ -189,10 +179,16 @@ macro_rules! scalar {
                 torque_a: [Self; 3],
                 torque_b: [Self; 3],
             ) {
+                let [x, y, z] = force;
                 // SAFETY: as for `scatter_pair`.
                 unsafe {
-                    Self::scatter_pair::<0, OPPOSITE>(of_a, a, of_b, b, force, force);
-                    Self::scatter_pair::<1, MODE>(of_a, a, of_b, b, torque_a, torque_b);
+                    Self::scatter_both(of_a, a, force, torque_a);
+                    Self::scatter_both(
+                        of_b,
+                        b,
+                        [-x, -y, -z],
+                        if MODE == OTHER { torque_b } else { torque_a },
+                    );
                 }
             }
             #[inline(always)]
@@ -203,9 +199,11 @@ macro_rules! scalar {
                 torque: [Self; 3],
             ) {
                 // SAFETY: as for `scatter`.
-                unsafe {
-                    Self::scatter::<0>(forces, at, force);
-                    Self::scatter::<1>(forces, at, torque);
+                unsafe { Self::scatter(forces, at, force) };
+                // SAFETY: as for `scatter`.
+                let numbers = unsafe { &mut (*forces.wrapping_add(*at as usize)).numbers };
+                for axis in 0..3 {
+                    numbers[Self::TORQUE + axis] += torque[axis];
                 }
             }
         }

@@ -376,7 +376,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             let on_a = [force[0], force[1], torque_a[2]];
             let on_b = [force[0], force[1], zero.sub(torque_b[2])];
             // SAFETY: the caller vouches for the indices; so below.
-            unsafe { L::scatter_pair::<0, MINUS>(self.forces, a, forces_b, b_target, on_a, on_b) };
+            unsafe { L::scatter_pair::<MINUS>(self.forces, a, forces_b, b_target, on_a, on_b) };
             let separation = S::vector_record(contact.separation);
             let shift = L::Wide::splat(VIRIAL_SHIFT);
             let [x, y, _] = separation;
@@ -388,7 +388,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         // SAFETY: see above.
         unsafe {
             if !C::NEEDS_SPIN {
-                L::scatter_pair::<0, OPPOSITE>(self.forces, a, forces_b, b_target, force, force);
+                L::scatter_pair::<OPPOSITE>(self.forces, a, forces_b, b_target, force, force);
             } else if G::EQUAL && !C::ROLLS {
                 L::scatter_contact::<SAME>(self.forces, a, forces_b, b_target, force, torque_a, torque_a);
             } else {

@@ -199,7 +199,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             if C::NEEDS_SPIN {
                 L::scatter_both(self.forces, a, force, S::spin_record(contact.torque_a));
             } else {
-                L::scatter::<0>(self.forces, a, force);
+                L::scatter(self.forces, a, force);
             }
             contact.response.normal.store(lanes.as_mut_ptr());
         }
