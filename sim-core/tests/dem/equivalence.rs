@@ -2,7 +2,7 @@
 
 use sim_core::dem::{Drag, Laws, Motion, SphereParameters, View, restore_spheres, spheres};
 
-use crate::support::{bits, fast, gas, paths_agree, quiet, scalar, violent};
+use crate::support::{at, bits, fast, gas, paths_agree, quiet, scalar, violent};
 
 #[test]
 fn vector_path_gives_the_bits_of_the_scalar_path() {
@@ -170,6 +170,23 @@ fn lists_that_live_on_miss_nothing() {
     }
     let after = dem.counters();
     assert!(after.prolonged - before.prolonged > 20, "{} {}", after.prolonged, after.refreshes);
+}
+
+#[test]
+fn a_sphere_that_flies_far_meets_what_lies_there() {
+    // The others are at rest and out of reach, so nothing but the margin of the near pairs asks for new lists on its way.
+    let mut positions: Vec<[f64; 3]> =
+        (0..12).map(|k| [-4.0 + 2.0 * f64::from(k % 4), 3.0, 2.0 * f64::from(k / 4)]).collect();
+    positions.extend([[-4.0, 0.0, 0.0], [0.0, 0.1, 0.0]]);
+    let mut velocities = vec![[0.0; 3]; positions.len()];
+    velocities[12] = [0.02, 0.0, 0.0];
+    let mut dem = spheres(&quiet(), &at(&positions, &velocities, 6.0), 0.1, Laws::Needed, &fast(1));
+    for _ in 0..200 {
+        dem.run(10).unwrap();
+        assert_nothing_is_missing(&dem.view());
+    }
+    assert!(dem.counters().prolonged > 5, "{}", dem.counters().prolonged);
+    assert!(dem.view().velocities[13] != [0.0; 3], "they have met");
 }
 
 #[test]
