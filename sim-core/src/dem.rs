@@ -15,6 +15,7 @@ mod persist;
 mod probe;
 mod prolong;
 mod refresh;
+mod sanity;
 mod spheres;
 mod step;
 mod threads;

@@ -12,8 +12,11 @@
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
+mod avx2_plane;
+#[cfg(target_arch = "x86_64")]
 mod avx2_single;
 mod gather;
+mod plane;
 mod scalar;
 #[cfg(target_arch = "x86_64")]
 mod two;
@@ -22,7 +25,8 @@ mod two;
 pub use avx2::Avx2;
 #[cfg(target_arch = "x86_64")]
 pub use avx2_single::Avx2Single;
-pub use gather::{Gather, MINUS, OPPOSITE, OTHER, Real, SAME};
+pub use gather::{Gather, NONE, OTHER, Real, SAME};
+pub use plane::{Plane, Widen};
 #[cfg(target_arch = "x86_64")]
 pub use two::Two;
 
@@ -41,21 +45,36 @@ pub trait Number: Copy + Default + PartialEq + std::fmt::Debug + Into<f64> + Sen
     /// the next row of four.
     const TORQUE: usize;
     /// Makes a body begin where it is fetched in the fewest pieces.
-    type Alignment: Copy + Default + PartialEq + std::fmt::Debug + Send + Sync + 'static;
+    type Alignment: Align;
+    /// The same for a disc.
+    type PlanarAlignment: Align;
+    /// The same for a row of four numbers.
+    type RowAlignment: Align;
 
     /// The nearest number.
     fn of(value: f64) -> Self;
 }
 
+/// Nothing but where something begins.
+pub trait Align: Copy + Default + PartialEq + std::fmt::Debug + Send + Sync + 'static {}
+
+/// A quarter of a cache line.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(align(16))]
+pub struct Aligned16;
+impl Align for Aligned16 {}
+
 /// Half a cache line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(align(32))]
 pub struct Aligned32;
+impl Align for Aligned32 {}
 
 /// A cache line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[repr(align(64))]
 pub struct Aligned64;
+impl Align for Aligned64 {}
 
 impl Number for f64 {
     const GROUP: usize = 4;
@@ -64,6 +83,9 @@ impl Number for f64 {
     const TORQUE: usize = 3;
     /// A body of three rows of 32 bytes.
     type Alignment = Aligned32;
+    /// A disc of 16 + 32 bytes in a cache line.
+    type PlanarAlignment = Aligned64;
+    type RowAlignment = Aligned32;
 
     #[inline(always)]
     fn of(value: f64) -> Self {
@@ -78,6 +100,9 @@ impl Number for f32 {
     const TORQUE: usize = 4;
     /// A body of 32 + 16 + 16 bytes.
     type Alignment = Aligned64;
+    /// A disc of 16 + 16 bytes.
+    type PlanarAlignment = Aligned32;
+    type RowAlignment = Aligned16;
 
     #[inline(always)]
     fn of(value: f64) -> Self {

@@ -8,8 +8,8 @@ pub use planar::Planar;
 pub use spatial::{Spatial, SpatialSlide, cross, sub_dot};
 pub use vector::{V1, V2, V3, Vector};
 
-use crate::lane::{Lane, Real};
-use crate::state::Body;
+use crate::lane::{Gather, Lane, Real};
+use crate::state::{Gain, Kinematics};
 
 /// What two bodies do past each other: what [`Space::slide`] needs.
 #[derive(Clone, Copy)]
@@ -28,8 +28,8 @@ pub struct Passing<S: Space, L: Lane> {
     pub half_dt: L,
 }
 
-/// Dimension, vectors and rotations. Records in memory always have three components; a planar system leaves the
-/// third one of positions and the first two of spins at zero and never computes with them.
+/// Dimension, vectors and rotations, and how bodies and forces lie in memory. Where three components are handed over, a planar
+/// system leaves the third one of positions and the first two of spins at zero and never computes with them.
 pub trait Space: Copy + Send + Sync + 'static {
     /// What velocities, forces and memories of contacts are kept in.
     type Real: Real;
@@ -73,11 +73,76 @@ pub trait Space: Copy + Send + Sync + 'static {
     /// A tangential force as a vector.
     fn shear_vector<L: Lane>(normal: Self::Vector<L>, shear: Self::Shear<L>) -> Self::Vector<L>;
 
-    /// Rows of a body. In the plane the spin is the third number of the row of the velocity: one row to move, one to
-    /// read.
-    fn body(position: [f64; 3], velocity: [f64; 3], spin: [f64; 3]) -> Body<Self::Real>;
-    /// Velocity and spin of a body [d/τ, 1/τ].
-    fn motion(body: &Body<Self::Real>) -> ([f64; 3], [f64; 3]);
-    /// Row of a body that holds the spin.
-    const SPIN_ROW: usize;
+    /// Record of a body.
+    type Body: Kinematics;
+    /// Record of the force on a body.
+    type Force: Gain;
+
+    /// Difference of the positions of bodies, b − a.
+    ///
+    /// # Safety
+    /// `a` and `b` point to `L::WIDTH` indices of bodies; so below.
+    unsafe fn separation<L: Gather<Scalar = Self::Real>>(
+        bodies: *const Self::Body,
+        a: *const u32,
+        b: *const u32,
+    ) -> Self::Vector<L::Wide>;
+    /// Difference of their velocities, b − a.
+    ///
+    /// # Safety
+    /// See [`Space::separation`].
+    unsafe fn velocity<L: Gather<Scalar = Self::Real>>(
+        bodies: *const Self::Body,
+        a: *const u32,
+        b: *const u32,
+    ) -> Self::Vector<L>;
+    /// The same and ω_a + ω_b.
+    ///
+    /// # Safety
+    /// See [`Space::separation`].
+    unsafe fn motion<L: Gather<Scalar = Self::Real>>(
+        bodies: *const Self::Body,
+        a: *const u32,
+        b: *const u32,
+    ) -> (Self::Vector<L>, Self::Spin<L>);
+    /// Spins of bodies.
+    ///
+    /// # Safety
+    /// See [`Space::separation`].
+    unsafe fn spins<L: Gather<Scalar = Self::Real>>(
+        bodies: *const Self::Body,
+        at: *const u32,
+    ) -> Self::Spin<L>;
+    /// Positions and velocities of bodies.
+    ///
+    /// # Safety
+    /// See [`Space::separation`].
+    unsafe fn places<L: Gather<Scalar = Self::Real>>(
+        bodies: *const Self::Body,
+        at: *const u32,
+    ) -> ([L::Wide; 3], [L; 3]);
+    /// Adds to the forces of `at`, lane after lane; torques where `SPIN`.
+    ///
+    /// # Safety
+    /// `at` points to `L::WIDTH` indices of writable forces.
+    unsafe fn scatter<L: Gather<Scalar = Self::Real>, const SPIN: bool>(
+        forces: *mut Self::Force,
+        at: *const u32,
+        force: Self::Vector<L>,
+        torque: Self::Spin<L>,
+    );
+    /// Adds to the forces of pairs, lane after lane: `force` and a torque to those of `a`, its opposite and a torque to those of
+    /// `b`. There are no torques ([`NONE`](crate::lane::NONE)), the first for both ([`SAME`](crate::lane::SAME)) or one for each
+    /// ([`OTHER`](crate::lane::OTHER)).
+    ///
+    /// # Safety
+    /// `a` and `b` point to `L::WIDTH` indices of writable forces in `of_a` and `of_b`.
+    unsafe fn scatter_pair<L: Gather<Scalar = Self::Real>, const TORQUES: u8>(
+        of_a: *mut Self::Force,
+        a: *const u32,
+        of_b: *mut Self::Force,
+        b: *const u32,
+        force: Self::Vector<L>,
+        torques: [Self::Spin<L>; 2],
+    );
 }

@@ -2,14 +2,13 @@
 
 use super::Dynamics;
 use super::engine::Dem;
-use super::lists::point;
 use super::probe::MOST_SLOTS;
 use crate::boundary::{CellControl, PeriodicCell};
 use crate::contact::ContactLaw;
 use crate::lane::{Real, WIDEST};
 use crate::observables::disc_contacts::DiscContact;
 use crate::space::{Planar, Space};
-use crate::state::{Force, Grains};
+use crate::state::{Force, Grains, Kinematics};
 
 /// A particle system in a periodic cell.
 pub trait CellDynamics: Dynamics {
@@ -121,7 +120,7 @@ impl<R: Real, G: Grains, C: ContactLaw<Planar<R>>> CellDynamics for Dem<Planar<R
         };
         for (slot, (body, force)) in self.bodies.iter().zip(&forces).enumerate() {
             let disc = self.original[slot] as usize;
-            let [u, v, w, _] = body.velocity.map(R::into);
+            let ([u, v, _], [_, _, w]) = body.motion();
             residuals.forces[disc] = libm::hypot(force.force()[0], force.force()[1]);
             residuals.moments[disc] = force.torque()[2].abs();
             residuals.kinetic[disc] =
@@ -144,10 +143,10 @@ impl<R: Real, G: Grains, C: ContactLaw<Planar<R>>> CellDynamics for Dem<Planar<R
         };
         for (slot, body) in self.bodies.iter().enumerate() {
             let disc = self.original[slot] as usize;
-            let inside = crate::boundary::Boundary::<Planar<R>>::inside(&self.boundary, point(body));
+            let inside = crate::boundary::Boundary::<Planar<R>>::inside(&self.boundary, body.position());
             picture.positions[disc] = [inside[0], inside[1]];
             picture.radii[disc] = self.grains.radius(slot);
-            let [u, v, spin, _] = body.velocity.map(R::into);
+            let ([u, v, _], [_, _, spin]) = body.motion();
             picture.velocities[disc] = [u, v];
             picture.spins[disc] = spin;
         }

@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 use super::View;
 use super::engine::{Dem, set_motion};
 use super::lists::speed;
+use super::motion::Moves;
 use crate::boundary::Boundary;
 use crate::contact::ContactLaw;
 use crate::lane::Number;
-use crate::space::Space;
-use crate::state::{Body, ContactList, Force, Grains};
+use crate::state::{ContactList, Grains, Kinematics};
 
 /// A particle system with its laws chosen. Object-safe and coarse: called per batch of steps.
 ///
@@ -186,7 +186,7 @@ pub struct Counters {
     pub bytes: u64,
 }
 
-impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dynamics for Dem<S, G, B, C> {
+impl<S: Moves, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dynamics for Dem<S, G, B, C> {
     fn run(&mut self, steps: u64) -> Result<(), Fault> {
         self.advance_steps(steps)
     }
@@ -230,7 +230,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dynamics for Dem<S, 
         }
         for change in changes {
             let body = &mut self.bodies[slot_of[change.particle]];
-            let spin = if C::NEEDS_SPIN { change.spin } else { S::motion(body).1 };
+            let spin = if C::NEEDS_SPIN { change.spin } else { body.motion().1 };
             set_motion::<S>(body, change.velocity, spin);
         }
         // Budgets were made for the old speeds.
@@ -260,8 +260,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dynamics for Dem<S, 
             counters.contacts = self.probe().pairs.len() as u64;
             counters.wall_contacts = self.probe().walls.len() as u64;
         }
-        let mut bytes = self.bodies.capacity() * size_of::<Body<S::Real>>()
-            + self.forces.capacity() * size_of::<Force<S::Real>>()
+        let mut bytes = self.bodies.capacity() * size_of::<S::Body>()
+            + self.forces.capacity() * size_of::<S::Force>()
             + (self.lists.near_at.capacity() + self.lists.listed_at.capacity()) * size_of::<[f64; 3]>()
             + self.lists.budget.capacity() * size_of::<f64>()
             + (self.lists.near_below.0.capacity() + self.lists.near_below.1.capacity()) * size_of::<u32>()

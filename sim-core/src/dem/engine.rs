@@ -12,7 +12,7 @@ use crate::control::ServoWalls;
 use crate::lane::Number;
 use crate::neighbour::CellList;
 use crate::space::Space;
-use crate::state::{Body, Chunk, Force, Grains, chunk_bounds};
+use crate::state::{Chunk, Grains, Kinematics, chunk_bounds};
 
 /// A discrete element system: space, sizes, boundary and law chosen at compile time.
 pub struct Dem<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
@@ -29,7 +29,7 @@ pub struct Dem<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
     pub(super) dt: f64,
     pub(super) time: f64,
     /// By slot.
-    pub(super) bodies: Vec<Body<S::Real>>,
+    pub(super) bodies: Vec<S::Body>,
     /// Original number of the particle in each slot.
     pub(super) original: Vec<u32>,
     pub(super) drag: Drag,
@@ -39,8 +39,8 @@ pub struct Dem<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
     /// Zero between steps. Where space deforms, of all particles: they move when all forces are known. Else of the largest chunk,
     /// once for every thread: a chunk moves right after its forces, and a small buffer used anew for every chunk stays in a
     /// cache that all the forces would be too large for.
-    pub(super) forces: Vec<Force<S::Real>>,
-    pub(super) chunks: Vec<Chunk<S::Real>>,
+    pub(super) forces: Vec<S::Force>,
+    pub(super) chunks: Vec<Chunk<S::Real, S::Force>>,
     pub(super) lists: Lists,
     pub(super) space: PhantomData<S>,
 }
@@ -96,7 +96,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         let bodies = (0..initial.positions.len())
             .map(|i| {
                 let spin = if C::NEEDS_SPIN { initial.spins[i] } else { [0.0; 3] };
-                S::body(initial.positions[i], initial.velocities[i], spin)
+                S::Body::new(initial.positions[i], initial.velocities[i], spin)
             })
             .collect::<Vec<_>>();
         let original = (0..bodies.len() as u32).collect();
@@ -115,14 +115,14 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         grains: G,
         boundary: B,
         walls: Option<ServoWalls>,
-        bodies: Vec<Body<S::Real>>,
+        bodies: Vec<S::Body>,
         original: Vec<u32>,
         dt: f64,
         path: Path,
         threads: usize,
     ) -> Self {
         let bounds = chunk_bounds(bodies.len());
-        let chunks: Vec<Chunk<S::Real>> =
+        let chunks: Vec<Chunk<S::Real, S::Force>> =
             bounds.windows(2).map(|bound| Chunk::new(bound[0], bound[1], C::SLOTS)).collect();
         let threads = threads.clamp(1, chunks.len());
         let largest = chunks.iter().map(|chunk| chunk.end - chunk.start).max().unwrap_or(0);
@@ -138,7 +138,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             step: 0,
             dt,
             time: 0.0,
-            forces: vec![Force::default(); forces],
+            forces: vec![S::Force::default(); forces],
             original,
             bodies,
             drag: Drag::None,
@@ -160,7 +160,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     }
 
     /// The force pass over the present state.
-    pub(super) fn pass(&self, forces: *mut Force<S::Real>) -> Pass<'_, S, G, B, C> {
+    pub(super) fn pass(&self, forces: *mut S::Force) -> Pass<'_, S, G, B, C> {
         Pass {
             law: &self.law,
             wall_law: &self.wall_law,
@@ -175,7 +175,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     }
 
     /// Where the forces of the particles of a chunk are while a thread works on it.
-    pub(super) fn forces_of(&self, chunk: usize, thread: usize) -> *mut Force<S::Real> {
+    pub(super) fn forces_of(&self, chunk: usize, thread: usize) -> *mut S::Force {
         let first =
             if B::DEFORMS { self.chunks[chunk].start } else { self.forces.len() / self.threads * thread };
         self.forces.as_ptr().cast_mut().wrapping_add(first)
@@ -206,7 +206,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         self.dt = dt;
         for (slot, body) in self.bodies.iter_mut().enumerate() {
             let force = &now.forces[slot];
-            let (mut velocity, mut spin) = S::motion(body);
+            let (mut velocity, mut spin) = body.motion();
             for axis in 0..3 {
                 velocity[axis] -= 0.5 * dt * force.force()[axis] * self.grains.inverse_mass(slot);
                 spin[axis] -= 0.5 * dt * force.torque()[axis] * self.grains.inverse_inertia(slot);
@@ -230,7 +230,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         let shift = 0.5 * (self.dt - dt);
         for (slot, body) in self.bodies.iter_mut().enumerate() {
             let force = &now.forces[slot];
-            let (mut velocity, mut spin) = S::motion(body);
+            let (mut velocity, mut spin) = body.motion();
             for axis in 0..3 {
                 velocity[axis] += shift * force.force()[axis] * self.grains.inverse_mass(slot);
                 spin[axis] += shift * force.torque()[axis] * self.grains.inverse_inertia(slot);
@@ -258,8 +258,6 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
 }
 
 /// Gives a body another velocity and spin.
-pub(super) fn set_motion<S: Space>(body: &mut Body<S::Real>, velocity: [f64; 3], spin: [f64; 3]) {
-    let [x, y, z, inverse_budget] = body.position;
-    *body = S::body([x, y, z], velocity, spin);
-    body.position[3] = inverse_budget;
+pub(super) fn set_motion<S: Space>(body: &mut S::Body, velocity: [f64; 3], spin: [f64; 3]) {
+    *body = S::Body::new(body.position(), velocity, spin).with_budget_of(body);
 }

@@ -16,7 +16,7 @@ use crate::contact::ContactLaw;
 use crate::control::ServoWalls;
 use crate::lane::{Gather, Lane, Number, Real, WIDEST};
 use crate::space::Space;
-use crate::state::{Body, Chunk, ContactList, Force, Grains};
+use crate::state::{Chunk, ContactList, Grains};
 
 /// Everything the force pass of a chunk reads, and where it writes.
 pub struct Pass<'a, S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
@@ -31,9 +31,9 @@ pub struct Pass<'a, S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
     /// Walls, where there are any.
     pub walls: Option<&'a ServoWalls>,
     /// All bodies.
-    pub bodies: *const Body<S::Real>,
+    pub bodies: *const S::Body,
     /// Where the force of particle 0 is or would be: only those of the chunk at work need be there.
-    pub forces: *mut Force<S::Real>,
+    pub forces: *mut S::Force,
     /// Time step [τ].
     pub dt: f64,
     /// The space.
@@ -71,8 +71,8 @@ fn wide_sum<L: Lane<Scalar = f64>>(of: L) -> f64 {
 
 /// Where the forces on b of the contacts of a list go.
 #[derive(Clone, Copy)]
-struct Targets<T: Number> {
-    forces: *mut Force<T>,
+struct Targets<S: Space> {
+    forces: *mut S::Force,
     /// Indices of the first group.
     at: *const u32,
     /// From one group to the next.
@@ -89,7 +89,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     unsafe fn contacts<L: Gather<Scalar = S::Real>>(
         &self,
         list: &mut ContactList<S::Real>,
-        targets: Targets<S::Real>,
+        targets: Targets<S>,
     ) -> [f64; 2] {
         let group_of = <S::Real as Number>::GROUP;
         let mut virial = [L::Wide::splat(0.0); 2];
@@ -149,7 +149,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         indices: *const u32,
         memory: *mut S::Real,
         rows: *const S::Real,
-        targets: Targets<S::Real>,
+        targets: Targets<S>,
         first: usize,
         count: usize,
     ) -> [L::Wide; 2] {
@@ -202,7 +202,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         indices: *const u32,
         memory: *mut S::Real,
         rows: *const S::Real,
-        targets: Targets<S::Real>,
+        targets: Targets<S>,
         first: usize,
         count: usize,
         meetings: *mut MaybeUninit<Meeting<S, L>>,
@@ -256,7 +256,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     unsafe fn apply_group<L: Gather<Scalar = S::Real>>(
         &self,
         indices: *const u32,
-        targets: Targets<S::Real>,
+        targets: Targets<S>,
         group: usize,
         contact: &Evaluated<S, L>,
         virial: &mut [L::Wide; 2],
@@ -278,7 +278,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// The lists of the chunk hold valid indices; the forces of its particles are writable and no other thread
     /// touches them; bodies are not written meanwhile.
     #[inline(always)]
-    unsafe fn chunk<L: Gather<Scalar = S::Real>>(&self, chunk: &mut Chunk<S::Real>) {
+    unsafe fn chunk<L: Gather<Scalar = S::Real>>(&self, chunk: &mut Chunk<S::Real, S::Force>) {
         // Laws on the stack: what they derive from their parameters is worked out once, not after every store.
         let (law, wall_law) = (*self.law, *self.wall_law);
         // SAFETY: the caller vouches.
@@ -287,7 +287,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
 
     /// See `chunk`.
     #[inline(always)]
-    unsafe fn chunk_with_own_laws<L: Gather<Scalar = S::Real>>(&self, chunk: &mut Chunk<S::Real>) {
+    unsafe fn chunk_with_own_laws<L: Gather<Scalar = S::Real>>(&self, chunk: &mut Chunk<S::Real, S::Force>) {
         let group_of = <S::Real as Number>::GROUP;
         let inner = Targets {
             forces: self.forces,
@@ -305,7 +305,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             }
         }
 
-        chunk.ghosts.forces.fill(Force::default());
+        chunk.ghosts.forces.fill(S::Force::default());
         let outer = Targets {
             forces: chunk.ghosts.forces.as_mut_ptr(),
             at: chunk.ghosts.targets.as_ptr(),
@@ -322,7 +322,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     ///
     /// # Safety
     /// As for `chunk`; `path` was chosen by [`Path::choose`] on this machine.
-    pub unsafe fn run(&self, path: Path, chunk: &mut Chunk<S::Real>) {
+    pub unsafe fn run(&self, path: Path, chunk: &mut Chunk<S::Real, S::Force>) {
         // SAFETY: the caller vouches; the path was detected.
         unsafe {
             match path {
@@ -337,14 +337,14 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "fma")]
-    unsafe fn run_plain_fma(&self, chunk: &mut Chunk<S::Real>) {
+    unsafe fn run_plain_fma(&self, chunk: &mut Chunk<S::Real, S::Force>) {
         // SAFETY: the caller vouches.
         unsafe { self.chunk::<S::Real>(chunk) }
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2,fma")]
-    unsafe fn run_avx2(&self, chunk: &mut Chunk<S::Real>) {
+    unsafe fn run_avx2(&self, chunk: &mut Chunk<S::Real, S::Force>) {
         // SAFETY: the caller vouches.
         unsafe { self.chunk::<<S::Real as Real>::Fast>(chunk) }
     }

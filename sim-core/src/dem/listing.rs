@@ -7,12 +7,12 @@ use crate::contact::ContactLaw;
 use crate::control::ServoWalls;
 use crate::lane::Number;
 use crate::space::Space;
-use crate::state::{Body, Chunk, Force, Grains};
+use crate::state::{Chunk, Grains, Kinematics};
 
 /// Lists the pairs of a chunk that may touch, keeping the memory of those that were listed.
 pub(super) fn list_pairs<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>>(
-    chunk: &mut Chunk<S::Real>,
-    bodies: &[Body<S::Real>],
+    chunk: &mut Chunk<S::Real, S::Force>,
+    bodies: &[S::Body],
     budget: &[f64],
     grains: &G,
     boundary: &B,
@@ -41,8 +41,8 @@ pub(super) fn list_pairs<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>>(
 
 /// Chooses the near pairs of a chunk whose gap may close while the budgets last, in order.
 fn select<S: Space, G: Grains, B: Boundary<S>>(
-    chunk: &mut Chunk<S::Real>,
-    bodies: &[Body<S::Real>],
+    chunk: &mut Chunk<S::Real, S::Force>,
+    bodies: &[S::Body],
     budget: &[f64],
     grains: &G,
     boundary: &B,
@@ -56,7 +56,7 @@ fn select<S: Space, G: Grains, B: Boundary<S>>(
     let (mut inside, mut across) = (0, 0);
     for &(a, b) in near.iter() {
         let (i, j) = (a as usize, b as usize);
-        let (x, y) = (&bodies[i].position, &bodies[j].position);
+        let (x, y) = (bodies[i].position(), bodies[j].position());
         let [dx, dy, dz] = boundary.separation([y[0] - x[0], y[1] - x[1], y[2] - x[2]]);
         let cutoff = (grains.radius(i) + budget[i]) + (grains.radius(j) + budget[j]) + slack;
         let may_touch = usize::from(dx * dx + dy * dy + dz * dz < cutoff * cutoff);
@@ -71,7 +71,7 @@ fn select<S: Space, G: Grains, B: Boundary<S>>(
 }
 
 /// Lists the ghosts of a chunk: the particles b of its outer contacts.
-fn list_ghosts<T: Number>(chunk: &mut Chunk<T>) {
+fn list_ghosts<T: Number, F: Clone + Default>(chunk: &mut Chunk<T, F>) {
     let ghosts = &mut chunk.ghosts;
     ghosts.changed = true;
     ghosts.particles.clear();
@@ -79,7 +79,7 @@ fn list_ghosts<T: Number>(chunk: &mut Chunk<T>) {
     ghosts.particles.sort_unstable();
     ghosts.particles.dedup();
     ghosts.forces.clear();
-    ghosts.forces.resize(ghosts.particles.len(), Force::default());
+    ghosts.forces.resize(ghosts.particles.len(), F::default());
     ghosts.targets.clear();
     for k in 0..chunk.outer.count {
         let (_, b) = chunk.outer.pair(k);
@@ -92,8 +92,8 @@ fn list_ghosts<T: Number>(chunk: &mut Chunk<T>) {
 
 /// Lists the particles of a chunk that may touch a wall, keeping the memory of those that were listed.
 pub(super) fn list_walls<S: Space, G: Grains, C: ContactLaw<S>>(
-    chunk: &mut Chunk<S::Real>,
-    bodies: &[Body<S::Real>],
+    chunk: &mut Chunk<S::Real, S::Force>,
+    bodies: &[S::Body],
     budget: &[f64],
     grains: &G,
     walls: &ServoWalls,
@@ -101,7 +101,7 @@ pub(super) fn list_walls<S: Space, G: Grains, C: ContactLaw<S>>(
 ) {
     let gap = |i: usize, wall: usize| {
         let axis = ServoWalls::axis(wall);
-        (walls.position[wall] - bodies[i].position[axis]) * ServoWalls::outward(wall) - wall_budget[wall]
+        (walls.position[wall] - bodies[i].position()[axis]) * ServoWalls::outward(wall) - wall_budget[wall]
     };
     let Chunk { start, end, outermost, selected: [beside, _], spare: [list, _], walls: listed, .. } = chunk;
     outermost.clear();

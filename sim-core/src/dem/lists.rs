@@ -6,7 +6,7 @@ use crate::contact::ContactLaw;
 use crate::lane::Number;
 use crate::neighbour::{hilbert_order, morton_order};
 use crate::space::Space;
-use crate::state::{Body, ContactList, Grains};
+use crate::state::{ContactList, Grains, Kinematics};
 
 /// Steps between two sorts of the particles along the space-filling curve. The order decides the order of sums, so
 /// this number is part of the definition of the result.
@@ -87,11 +87,11 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         let (mut pairs, mut walls) = self.carried();
         if B::DEFORMS {
             for body in &mut self.bodies {
-                let inside = self.boundary.inside(point(body));
-                body.position[..3].copy_from_slice(&inside);
+                let inside = self.boundary.inside(body.position());
+                body.move_to(inside);
             }
         }
-        let at = |slot: usize| point(&self.bodies[slot]);
+        let at = |slot: usize| self.bodies[slot].position();
         let order =
             if S::DIMENSION == 3 { hilbert_order(self.len(), at) } else { morton_order(self.len(), at) };
         let mut slot_of = vec![0_u32; self.len()];
@@ -123,13 +123,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     }
 }
 
-/// Centre of a body [d].
-pub(super) fn point<T: Number>(body: &Body<T>) -> [f64; 3] {
-    [body.position[0], body.position[1], body.position[2]]
-}
-
 /// Speed of a body [d/τ].
-pub(super) fn speed<S: Space>(body: &Body<S::Real>) -> f64 {
-    let (v, _) = S::motion(body);
+pub(super) fn speed<S: Space>(body: &S::Body) -> f64 {
+    let (v, _) = body.motion();
     (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]).sqrt()
 }

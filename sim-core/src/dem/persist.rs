@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::engine::Dem;
 use super::kernel::Path;
-use super::lists::{Carried, point};
+use super::lists::Carried;
 use super::{Drag, lists};
 use crate::SimError;
 use crate::boundary::Boundary;
@@ -13,7 +13,7 @@ use crate::contact::ContactLaw;
 use crate::control::ServoWalls;
 use crate::lane::Number;
 use crate::space::Space;
-use crate::state::Grains;
+use crate::state::{Grains, Kinematics};
 
 /// The stored state, particles in slot order.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -90,8 +90,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                 .bodies
                 .iter()
                 .map(|body| {
-                    let (velocity, spin) = S::motion(body);
-                    [point(body), velocity, spin]
+                    let (velocity, spin) = body.motion();
+                    [body.position(), velocity, spin]
                 })
                 .collect(),
             original: self.original.clone(),
@@ -112,7 +112,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         path: Path,
         threads: usize,
     ) -> Self {
-        let bodies = state.bodies.iter().map(|&[x, v, w]| S::body(x, v, w)).collect();
+        let bodies = state.bodies.iter().map(|&[x, v, w]| S::Body::new(x, v, w)).collect();
         let mut dem = Self::assemble(
             law,
             wall_law,

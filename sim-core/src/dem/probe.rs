@@ -1,7 +1,6 @@
 //! Looking at the state without changing it: the forces of this instant and the [`View`].
 
 use super::engine::Dem;
-use super::lists::point;
 use super::{Energies, PairContact, View, WallContact, WallView};
 use crate::boundary::Boundary;
 use crate::contact::{ContactLaw, Response};
@@ -9,7 +8,7 @@ use crate::control::ServoWalls;
 use crate::dem::kernel::{Evaluated, constants_of};
 use crate::lane::{Number, WIDEST};
 use crate::space::{Space, Vector};
-use crate::state::{Body, ContactList, Force, Grains};
+use crate::state::{ContactList, Force, Grains, Kinematics};
 
 /// Most memory slots a law may have.
 pub(super) const MOST_SLOTS: usize = 8;
@@ -124,12 +123,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     }
 
     /// Velocity and spin at t_n, from those at t_n − dt/2 and the forces of t_n.
-    fn synchronous(&self, slot: usize, body: &Body<S::Real>, force: &Force<f64>) -> ([f64; 3], [f64; 3]) {
+    fn synchronous(&self, slot: usize, body: &S::Body, force: &Force<f64>) -> ([f64; 3], [f64; 3]) {
         let half = 0.5 * self.dt;
         let keep = 1.0 / (1.0 + half * self.drag_rates().of(slot));
         let (per_mass, per_inertia) =
             (half * self.grains.inverse_mass(slot), half * self.grains.inverse_inertia(slot));
-        let (velocity, spin) = S::motion(body);
+        let (velocity, spin) = body.motion();
         (
             std::array::from_fn(|k| keep * (velocity[k] + per_mass * force.force()[k])),
             std::array::from_fn(|k| keep * (spin[k] + per_inertia * force.torque()[k])),
@@ -162,7 +161,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             slot_of[particle] = slot;
             let (velocity, spin) = self.synchronous(slot, body, &forces[slot]);
             view.radii[particle] = self.grains.radius(slot);
-            view.positions[particle] = point(body);
+            view.positions[particle] = body.position();
             view.velocities[particle] = velocity;
             view.spins[particle] = spin;
             view.forces[particle] = std::array::from_fn(|k| forces[slot].force()[k]);

@@ -4,7 +4,6 @@
 //! that have gone far get a new budget where they are, if all they may touch with it is listed already.
 
 use super::engine::Dem;
-use super::lists::point;
 use super::refresh::MOST_BUDGET;
 use super::threads::Crew;
 use crate::boundary::Boundary;
@@ -12,7 +11,7 @@ use crate::contact::ContactLaw;
 use crate::control::ServoWalls;
 use crate::lane::Number;
 use crate::space::Space;
-use crate::state::{Chunk, Grains};
+use crate::state::{Chunk, Grains, Kinematics};
 
 /// Used share of a budget from which a particle asks for a new one.
 const SPENT: f64 = 0.5;
@@ -50,7 +49,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             own.spenders.clear();
             for ((body, from), particle) in bodies.iter().zip(&listed_at[own.start..own.end]).zip(own.start..)
             {
-                let [x, y, z, inverse_budget] = body.position;
+                let ([x, y, z], inverse_budget) = (body.position(), body.inverse_budget());
                 let [dx, dy, dz] = [x - from[0], y - from[1], z - from[2]];
                 let share = (dx * dx + dy * dy + dz * dz) * (inverse_budget * inverse_budget);
                 // Written so that a NaN has spent its budget.
@@ -98,8 +97,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             return false;
         };
         self.lists.budget[i] = budget;
-        self.lists.listed_at[i] = point(&self.bodies[i]);
-        self.bodies[i].position[3] = 1.0 / budget;
+        self.lists.listed_at[i] = self.bodies[i].position();
+        self.bodies[i].set_budget(budget);
         true
     }
 
@@ -109,7 +108,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             self.lists.near_below = near_below(&self.chunks, self.bodies.len());
         }
         let (lists, i) = (&self.lists, particle as usize);
-        let x = point(&self.bodies[i]);
+        let x = self.bodies[i].position();
         let gone: f64 = (0..3).map(|k| (x[k] - lists.near_at[i][k]).powi(2)).sum();
         let room = lists.margin - budget;
         // As at a refresh: written so that a NaN strays.
@@ -153,7 +152,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
 }
 
 /// The near pairs (a, b), a < b, by b: those of b are `lower[starts[b]..starts[b + 1]]`.
-fn near_below<T: Number>(chunks: &[Chunk<T>], particles: usize) -> (Vec<u32>, Vec<u32>) {
+fn near_below<T: Number, F>(chunks: &[Chunk<T, F>], particles: usize) -> (Vec<u32>, Vec<u32>) {
     let near = || chunks.iter().flat_map(|chunk| &chunk.near);
     let mut starts = vec![0_u32; particles + 1];
     for &(_, b) in near() {

@@ -3,13 +3,13 @@
 
 use super::engine::Dem;
 use super::listing::{list_pairs, list_walls};
-use super::lists::{NEAR_MARGIN, point, speed};
+use super::lists::{NEAR_MARGIN, speed};
 use super::threads::{Crew, Shared};
 use crate::boundary::Boundary;
 use crate::contact::ContactLaw;
 use crate::neighbour::near_pairs;
 use crate::space::Space;
-use crate::state::{Body, Chunk, Grains};
+use crate::state::{Chunk, Grains, Kinematics};
 
 /// Smallest and largest displacement budget of a particle between two refreshes [d].
 const LEAST_BUDGET: f64 = 4e-4;
@@ -23,7 +23,8 @@ const LEAST_SPEED: f64 = 0.6;
 const STEPS_PER_REFRESH: (f64, f64) = (6.0, 120.0);
 
 /// Bodies and budgets of a chunk, and the chunk.
-pub(super) type Parts<'a, T> = (&'a mut [Body<T>], &'a mut [f64], &'a mut Chunk<T>);
+pub(super) type Parts<'a, S> =
+    (&'a mut [<S as Space>::Body], &'a mut [f64], &'a mut Chunk<<S as Space>::Real, <S as Space>::Force>);
 
 impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     /// Gives every particle and wall a displacement budget for the coming steps and lists the pairs that may touch
@@ -119,11 +120,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             let listed_at = std::slice::from_raw_parts_mut(listed_at, near_at.len());
             let mut stay = true;
             for (((body, budget), from), at) in bodies.iter_mut().zip(budget).zip(near_at).zip(listed_at) {
-                *at = point(body);
+                let position = body.position();
+                *at = position;
                 *budget = budget_of(*budget, lists.horizon).max(lists.least_budget);
-                body.position[3] = 1.0 / *budget;
+                body.set_budget(*budget);
                 let from = boundary.since_mark(*from);
-                let square: f64 = (0..3).map(|k| (body.position[k] - from[k]).powi(2)).sum();
+                let square: f64 = (0..3).map(|k| (position[k] - from[k]).powi(2)).sum();
                 let room = lists.margin - *budget;
                 // Written so that a NaN strays.
                 stay &= room > 0.0 && square < room * room;
@@ -189,7 +191,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     ///
     /// # Safety
     /// The caller has this chunk to itself.
-    pub(super) unsafe fn parts<'a>(dem: *mut Self, chunk: usize) -> Parts<'a, S::Real> {
+    pub(super) unsafe fn parts<'a>(dem: *mut Self, chunk: usize) -> Parts<'a, S> {
         // SAFETY: the caller vouches; chunks do not overlap.
         unsafe {
             let shared = &*dem;
@@ -209,13 +211,13 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     pub(super) fn rebuild(&mut self) {
         self.lists.rebuilds += 1;
         let bodies = &self.bodies;
-        self.lists.near_at = bodies.iter().map(point).collect();
+        self.lists.near_at = bodies.iter().map(Kinematics::position).collect();
         self.lists.near_below.0.clear();
         let reach = 2.0 * NEAR_MARGIN + self.law.range();
         let size = 2.0 * self.grains.largest_radius() + reach;
         self.boundary.mark();
         let boundary = &self.boundary;
-        let mut places: Vec<[f64; 3]> = bodies.iter().map(|body| boundary.inside(point(body))).collect();
+        let mut places: Vec<[f64; 3]> = bodies.iter().map(|body| boundary.inside(body.position())).collect();
         // Images near the borders of a periodic space join the search; `real` tells whose they are.
         let mut real: Vec<u32> = (0..bodies.len() as u32).collect();
         for slot in 0..bodies.len() {

@@ -2,22 +2,17 @@
 
 use super::Fault;
 use super::engine::Dem;
-use super::lists::{SORT_EVERY, speed};
-use super::motion::{Deformation, advance, advance_with_space};
+use super::lists::SORT_EVERY;
+use super::motion::{Deformation, Moves};
 use super::threads::{Crew, Shared};
 use crate::boundary::Boundary;
 use crate::contact::ContactLaw;
-use crate::lane::Lane;
-use crate::space::Space;
-use crate::state::Grains;
+use crate::state::{Gain, Grains};
 
 /// Steps between two looks at whether the state is still sane.
 const LOOK_EVERY: u64 = 64;
 
-/// Largest distance a particle or wall may move in a step [d].
-const FASTEST: f64 = 0.25;
-
-impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
+impl<S: Moves, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     /// Does `steps` steps.
     pub(super) fn advance_steps(&mut self, steps: u64) -> Result<(), Fault> {
         let chunks = self.chunks.len();
@@ -106,7 +101,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         unsafe {
             let shared = &*dem;
             let forces = shared.forces_of(chunk, thread).wrapping_sub(shared.chunks[chunk].start);
-            let own = (&raw mut (*dem).chunks).cast::<Vec<crate::state::Chunk<S::Real>>>();
+            let own = (&raw mut (*dem).chunks).cast::<Vec<crate::state::Chunk<S::Real, S::Force>>>();
             let own = (*own).as_mut_ptr().add(chunk);
             shared.pass(forces).run(shared.path, &mut *own);
         }
@@ -130,41 +125,18 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                 for (&particle, ghost) in particles.iter().zip(&ghosts.forces[places.clone()]) {
                     let force = &mut *forces.add(particle as usize - start);
                     // All of it is read before it is written: then a row is an operation or two.
-                    force.numbers = std::array::from_fn(|k| force.numbers[k].add(ghost.numbers[k]));
+                    force.gain(ghost);
                 }
             }
             let bodies = std::slice::from_raw_parts_mut(bodies.add(start), end - start);
             let forces = std::slice::from_raw_parts_mut(forces, end - start);
             let (grains, drag, dt) = (&shared.grains, shared.drag_rates(), shared.dt);
-            let rush = if B::DEFORMS {
-                let rate = shared.boundary.next_rate(shared.virial(), dt);
-                let local_damping = shared.boundary.local_damping();
-                let deformation = Deformation { rate, local_damping, drag };
-                if C::NEEDS_SPIN {
-                    advance_with_space::<S::Real, G, true>(
-                        shared.path,
-                        bodies,
-                        forces,
-                        start,
-                        grains,
-                        deformation,
-                        dt,
-                    )
-                } else {
-                    advance_with_space::<S::Real, G, false>(
-                        shared.path,
-                        bodies,
-                        forces,
-                        start,
-                        grains,
-                        deformation,
-                        dt,
-                    )
-                }
-            } else if C::NEEDS_SPIN {
-                advance::<S::Real, G, true>(shared.path, bodies, forces, start, grains, drag, dt)
+            let rate = if B::DEFORMS { shared.boundary.next_rate(shared.virial(), dt) } else { [0.0; 3] };
+            let deformation = Deformation { rate, local_damping: shared.boundary.local_damping(), drag };
+            let rush = if C::NEEDS_SPIN {
+                S::advance::<G, true>(shared.path, bodies, forces, start, grains, deformation, dt)
             } else {
-                advance::<S::Real, G, false>(shared.path, bodies, forces, start, grains, drag, dt)
+                S::advance::<G, false>(shared.path, bodies, forces, start, grains, deformation, dt)
             };
             let own = shared.chunks.as_ptr().cast_mut().add(chunk);
             (*own).rush = rush;
@@ -221,47 +193,5 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             }
         }
         sum
-    }
-
-    /// Whether the state makes sense.
-    pub(super) fn look(&self) -> Result<(), Fault> {
-        let fault = |what: String| Err(Fault { step: self.step, what });
-        if let Some(what) = self.boundary.fault() {
-            return fault(what);
-        }
-        for (slot, body) in self.bodies.iter().enumerate() {
-            let (x, (v, w)) = (&body.position, S::motion(body));
-            if !(0..3).all(|k| x[k].is_finite() && v[k].is_finite() && w[k].is_finite()) {
-                return fault(format!("particle {} is not finite", self.original[slot]));
-            }
-            let travel = speed::<S>(body) * self.dt;
-            if travel > FASTEST {
-                return fault(format!("particle {} moves {travel:.3e} d in a step", self.original[slot]));
-            }
-            if let Some(walls) = &self.walls {
-                for axis in 0..3 {
-                    let beyond =
-                        (walls.position[2 * axis] - x[axis]).max(x[axis] - walls.position[2 * axis + 1]);
-                    if beyond > 1.0 {
-                        return fault(format!(
-                            "particle {} is {beyond:.3e} d outside the walls",
-                            self.original[slot]
-                        ));
-                    }
-                }
-            }
-        }
-        if let Some(walls) = &self.walls {
-            for wall in 0..6 {
-                if !walls.position[wall].is_finite() || !walls.velocity[wall].is_finite() {
-                    return fault(format!("wall {wall} is not finite"));
-                }
-                let travel = walls.velocity[wall].abs() * self.dt;
-                if travel > FASTEST {
-                    return fault(format!("wall {wall} moves {travel:.3e} d in a step"));
-                }
-            }
-        }
-        Ok(())
     }
 }

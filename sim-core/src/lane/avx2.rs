@@ -13,7 +13,7 @@ use std::arch::x86_64::{
     _mm256_unpacklo_pd, _mm256_xor_pd,
 };
 
-use super::{Gather, Lane, MINUS, Number, OTHER};
+use super::{Gather, Lane, Number, OTHER, Widen};
 use crate::state::{Body, Force};
 
 /// Four doubles in one register.
@@ -50,7 +50,7 @@ impl Avx2 {
 
     /// Three columns to four rows, fourth component +0.
     #[inline(always)]
-    fn rows(value: [Self; 3]) -> [__m256d; 4] {
+    pub(super) fn rows(value: [Self; 3]) -> [__m256d; 4] {
         // SAFETY: values of this type only exist where AVX2 was detected.
         unsafe {
             let zero = _mm256_setzero_pd();
@@ -291,7 +291,7 @@ impl Lane for Avx2 {
     }
 }
 
-impl Gather for Avx2 {
+impl Widen for Avx2 {
     type Wide = Self;
 
     #[inline(always)]
@@ -307,6 +307,9 @@ impl Gather for Avx2 {
         let (distance, inverse_square) = (square.sqrt(), Self::splat(1.0).div(square));
         [reach.sub(distance), distance.mul(inverse_square)]
     }
+}
+
+impl Gather for Avx2 {
     #[inline(always)]
     unsafe fn gather(table: *const f64, at: *const u32) -> Self {
         // SAFETY: the caller vouches for the indices.
@@ -357,16 +360,14 @@ impl Gather for Avx2 {
         }
     }
     #[inline(always)]
-    unsafe fn scatter_pair<const MODE: u8>(
+    unsafe fn scatter_pair(
         of_a: *mut Force<f64>,
         a: *const u32,
         of_b: *mut Force<f64>,
         b: *const u32,
         value: [Self; 3],
-        other: [Self; 3],
     ) {
         let rows = Self::rows(value);
-        let others = if MODE == MINUS { Self::rows(other) } else { rows };
         // SAFETY: the caller vouches for the indices; a force is two aligned rows of four doubles.
         unsafe {
             for lane in 0..4 {
@@ -374,7 +375,7 @@ impl Gather for Avx2 {
                 let to = of_a.wrapping_add(*a.add(lane) as usize).cast::<f64>();
                 _mm256_store_pd(to, _mm256_add_pd(_mm256_load_pd(to), row));
                 let to = of_b.wrapping_add(*b.add(lane) as usize).cast::<f64>();
-                _mm256_store_pd(to, _mm256_sub_pd(_mm256_load_pd(to), others[lane]));
+                _mm256_store_pd(to, _mm256_sub_pd(_mm256_load_pd(to), row));
             }
         }
     }

@@ -13,12 +13,12 @@ use std::arch::x86_64::{
     _mm256_unpacklo_ps, _mm256_xor_ps,
 };
 
-use super::{Avx2, Gather, Lane, MINUS, OTHER, Two};
+use super::{Avx2, Gather, Lane, OTHER, Two, Widen};
 use crate::state::{Body, Force};
 
 /// Eight floats in one register.
 #[derive(Clone, Copy)]
-pub struct Avx2Single(__m256);
+pub struct Avx2Single(pub(super) __m256);
 
 /// Sign bits of the first four.
 const LOWER: [f32; 8] = [-0.0, -0.0, -0.0, -0.0, 0.0, 0.0, 0.0, 0.0];
@@ -120,7 +120,7 @@ impl Avx2Single {
 
     /// Rows of four, contact after contact.
     #[inline(always)]
-    fn records([x, y, z]: [Self; 3]) -> [__m128; 8] {
+    pub(super) fn records([x, y, z]: [Self; 3]) -> [__m128; 8] {
         let [r0, r1, r2, r3] = Self::rows([x.0, y.0, z.0]);
         // SAFETY: see `columns`.
         unsafe {
@@ -256,7 +256,7 @@ impl Lane for Avx2Single {
     }
 }
 
-impl Gather for Avx2Single {
+impl Widen for Avx2Single {
     type Wide = Two<Avx2>;
 
     #[inline(always)]
@@ -285,7 +285,9 @@ impl Gather for Avx2Single {
         let opposite = Self(unsafe { _mm256_xor_ps(gap.0, minus.0) });
         [opposite.div(distance.add(Self::narrow(reach))), distance.mul(inverse_square)]
     }
+}
 
+impl Gather for Avx2Single {
     #[inline(always)]
     unsafe fn gather(table: *const f64, at: *const u32) -> Self {
         // SAFETY: the caller vouches for the indices.
@@ -366,23 +368,21 @@ impl Gather for Avx2Single {
         }
     }
     #[inline(always)]
-    unsafe fn scatter_pair<const MODE: u8>(
+    unsafe fn scatter_pair(
         of_a: *mut Force<f32>,
         a: *const u32,
         of_b: *mut Force<f32>,
         b: *const u32,
         value: [Self; 3],
-        other: [Self; 3],
     ) {
         let rows = Self::records(value);
-        let others = if MODE == MINUS { Self::records(other) } else { rows };
         // SAFETY: as for `scatter`.
         unsafe {
             for lane in 0..8 {
                 let to = of_a.wrapping_add(*a.add(lane) as usize).cast::<f32>();
                 _mm_store_ps(to, _mm_add_ps(_mm_load_ps(to), rows[lane]));
                 let to = of_b.wrapping_add(*b.add(lane) as usize).cast::<f32>();
-                _mm_store_ps(to, _mm_sub_ps(_mm_load_ps(to), others[lane]));
+                _mm_store_ps(to, _mm_sub_ps(_mm_load_ps(to), rows[lane]));
             }
         }
     }

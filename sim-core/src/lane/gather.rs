@@ -1,6 +1,6 @@
 //! What the kernel does with the records of bodies and forces.
 
-use super::{Lane, Number};
+use super::{Number, Plane};
 use crate::state::{Body, Force};
 
 /// A number that is its own bundle: the plain path.
@@ -10,18 +10,7 @@ pub trait Real: Number + Gather<Scalar = Self, Mask = bool, Wide = f64> {
 }
 
 /// A bundle that can be read from bodies and added to forces.
-pub trait Gather: Lane {
-    /// As many `f64`.
-    type Wide: Lane<Scalar = f64>;
-
-    /// The nearest numbers.
-    fn narrow(wide: Self::Wide) -> Self;
-    /// The same numbers.
-    fn widen(self) -> Self::Wide;
-    /// Overlap and 1/distance of bodies that touch at the distance `reach`, from the `square` of their distance; exact to
-    /// rounding whatever the overlap.
-    fn meet(square: Self::Wide, reach: Self::Wide) -> [Self; 2];
-
+pub trait Gather: Plane {
     /// Numbers at scattered places of a table.
     ///
     /// # Safety
@@ -62,18 +51,16 @@ pub trait Gather: Lane {
     /// # Safety
     /// `at` points to `WIDTH` indices of writable forces.
     unsafe fn scatter(forces: *mut Force<Self::Scalar>, at: *const u32, value: [Self; 3]);
-    /// Adds `value` to the first row of the forces of `a` and, lane after lane, subtracts it (`MODE` [`OPPOSITE`]) or `other`
-    /// ([`MINUS`]) from that of `b`.
+    /// Adds `value` to the first row of the forces of `a` and, lane after lane, subtracts it from that of `b`.
     ///
     /// # Safety
     /// `a` and `b` point to `WIDTH` indices of writable forces in `of_a` and `of_b`.
-    unsafe fn scatter_pair<const MODE: u8>(
+    unsafe fn scatter_pair(
         of_a: *mut Force<Self::Scalar>,
         a: *const u32,
         of_b: *mut Force<Self::Scalar>,
         b: *const u32,
         value: [Self; 3],
-        other: [Self; 3],
     );
     /// Both records of a pair in one go, lane after lane: adds `force` and `torque_a` to the forces of `a`, subtracts
     /// `force` from those of `b` and adds to them `torque_a` (`MODE` [`SAME`]) or `torque_b` ([`OTHER`]).
@@ -101,11 +88,9 @@ pub trait Gather: Lane {
     );
 }
 
-/// See [`Gather::scatter_pair`].
-pub const OPPOSITE: u8 = 0;
+/// No torques; see [`crate::space::Space::scatter_pair`].
+pub const NONE: u8 = 0;
 /// See [`Gather::scatter_contact`].
 pub const SAME: u8 = 1;
 /// See [`Gather::scatter_contact`].
 pub const OTHER: u8 = 2;
-/// See [`Gather::scatter_pair`].
-pub const MINUS: u8 = 3;

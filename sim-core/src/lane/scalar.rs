@@ -1,7 +1,7 @@
 //! One number at a time: the plain path, lane for lane the arithmetic of the vector path.
 
-use super::{Gather, Lane, MINUS, Number, OTHER, Real};
-use crate::state::{Body, Force};
+use super::{Gather, Lane, Number, OTHER, Plane, Real, Widen};
+use crate::state::{Body, Force, PlanarBody, PlanarForce};
 
 macro_rules! scalar {
     ($number:ty, $meet:expr) => {
@@ -87,7 +87,7 @@ macro_rules! scalar {
             }
         }
 
-        impl Gather for $number {
+        impl Widen for $number {
             type Wide = f64;
 
             #[inline(always)]
@@ -102,6 +102,52 @@ macro_rules! scalar {
             fn meet(square: f64, reach: f64) -> [Self; 2] {
                 $meet(square, reach)
             }
+        }
+
+        impl Plane for $number {
+            #[inline(always)]
+            unsafe fn discs_apart(
+                bodies: *const PlanarBody<Self>,
+                a: *const u32,
+                b: *const u32,
+            ) -> ([f64; 2], [Self; 2]) {
+                // SAFETY: the caller vouches for the indices.
+                let (p, q) = unsafe { (&*bodies.add(*a as usize), &*bodies.add(*b as usize)) };
+                (
+                    [q.position[0] - p.position[0], q.position[1] - p.position[1]],
+                    [q.motion[0] - p.motion[0], q.motion[1] - p.motion[1]],
+                )
+            }
+            #[inline(always)]
+            unsafe fn disc_spins(bodies: *const PlanarBody<Self>, at: *const u32) -> Self {
+                // SAFETY: the caller vouches for the index.
+                unsafe { (*bodies.add(*at as usize)).motion[2] }
+            }
+            #[inline(always)]
+            unsafe fn scatter_discs(
+                of_a: *mut PlanarForce<Self>,
+                a: *const u32,
+                of_b: *mut PlanarForce<Self>,
+                b: *const u32,
+                force: [Self; 2],
+                torque_a: Self,
+                torque_b: Self,
+            ) {
+                // SAFETY: the caller vouches for the indices; the two references do not live at the same time.
+                unsafe {
+                    let numbers = &mut (*of_a.wrapping_add(*a as usize)).numbers;
+                    numbers[0] += force[0];
+                    numbers[1] += force[1];
+                    numbers[2] += torque_a;
+                    let numbers = &mut (*of_b.wrapping_add(*b as usize)).numbers;
+                    numbers[0] -= force[0];
+                    numbers[1] -= force[1];
+                    numbers[2] += torque_b;
+                }
+            }
+        }
+
+        impl Gather for $number {
             #[inline(always)]
             unsafe fn gather(table: *const f64, at: *const u32) -> Self {
                 // SAFETY: the caller vouches for the index.
@@ -154,15 +200,14 @@ macro_rules! scalar {
                 }
             }
             #[inline(always)]
-            unsafe fn scatter_pair<const MODE: u8>(
+            unsafe fn scatter_pair(
                 of_a: *mut Force<Self>,
                 a: *const u32,
                 of_b: *mut Force<Self>,
                 b: *const u32,
                 value: [Self; 3],
-                other: [Self; 3],
             ) {
-                let [x, y, z] = if MODE == MINUS { other } else { value };
+                let [x, y, z] = value;
                 // SAFETY: the caller vouches for the indices; the two references do not live at the same time.
                 unsafe {
                     Self::scatter(of_a, a, value);

@@ -3,8 +3,8 @@
 use super::{Passing, Space, V1, V2, Vector};
 use std::marker::PhantomData;
 
-use crate::lane::{Lane, Real};
-use crate::state::Body;
+use crate::lane::{Gather, Lane, Real, WIDEST};
+use crate::state::{PlanarBody, PlanarForce};
 
 /// Motion across the normal in the plane, along t = (−n_y, n_x).
 #[derive(Clone, Copy)]
@@ -85,17 +85,100 @@ impl<R: Real> Space for Planar<R> {
         V2([L::splat(0.0).sub(shear.mul(y)), shear.mul(x)])
     }
 
-    fn body(position: [f64; 3], velocity: [f64; 3], spin: [f64; 3]) -> Body<R> {
-        Body {
-            aligned: [],
-            position: [position[0], position[1], 0.0, 0.0],
-            velocity: [velocity[0], velocity[1], spin[2], 0.0].map(R::of),
-            spin: [R::default(); 4],
+    type Body = PlanarBody<R>;
+    type Force = PlanarForce<R>;
+
+    #[inline(always)]
+    unsafe fn separation<L: Gather<Scalar = R>>(
+        bodies: *const PlanarBody<R>,
+        a: *const u32,
+        b: *const u32,
+    ) -> V2<L::Wide> {
+        // SAFETY: the caller vouches for the indices; so throughout.
+        V2(unsafe { L::discs_apart(bodies, a, b) }.0)
+    }
+    #[inline(always)]
+    unsafe fn velocity<L: Gather<Scalar = R>>(
+        bodies: *const PlanarBody<R>,
+        a: *const u32,
+        b: *const u32,
+    ) -> V2<L> {
+        // SAFETY: see `separation`.
+        V2(unsafe { L::discs_apart(bodies, a, b) }.1)
+    }
+    #[inline(always)]
+    unsafe fn motion<L: Gather<Scalar = R>>(
+        bodies: *const PlanarBody<R>,
+        a: *const u32,
+        b: *const u32,
+    ) -> (V2<L>, V1<L>) {
+        // SAFETY: see `separation`.
+        unsafe {
+            let sum = L::disc_spins(bodies, a).add(L::disc_spins(bodies, b));
+            (Self::velocity::<L>(bodies, a, b), V1([sum]))
         }
     }
-    fn motion(body: &Body<R>) -> ([f64; 3], [f64; 3]) {
-        let [u, v, spin, _] = body.velocity.map(R::into);
-        ([u, v, 0.0], [0.0, 0.0, spin])
+    #[inline(always)]
+    unsafe fn spins<L: Gather<Scalar = R>>(bodies: *const PlanarBody<R>, at: *const u32) -> V1<L> {
+        // SAFETY: see `separation`.
+        V1([unsafe { L::disc_spins(bodies, at) }])
     }
-    const SPIN_ROW: usize = 1;
+    /// Lane by lane: walls stand in space only.
+    #[inline(always)]
+    unsafe fn places<L: Gather<Scalar = R>>(
+        bodies: *const PlanarBody<R>,
+        at: *const u32,
+    ) -> ([L::Wide; 3], [L; 3]) {
+        let (mut positions, mut velocities) = ([[0.0; WIDEST]; 2], [[R::default(); WIDEST]; 2]);
+        // SAFETY: see `separation`; no bundle is wider than the buffers.
+        unsafe {
+            for lane in 0..L::WIDTH {
+                let body = &*bodies.add(*at.add(lane) as usize);
+                for axis in 0..2 {
+                    positions[axis][lane] = body.position[axis];
+                    velocities[axis][lane] = body.motion[axis];
+                }
+            }
+            let ([x, y], [u, v]) = (positions, velocities);
+            (
+                [L::Wide::load(x.as_ptr()), L::Wide::load(y.as_ptr()), L::Wide::splat(0.0)],
+                [L::load(u.as_ptr()), L::load(v.as_ptr()), L::splat(0.0)],
+            )
+        }
+    }
+    #[inline(always)]
+    unsafe fn scatter<L: Gather<Scalar = R>, const SPIN: bool>(
+        forces: *mut PlanarForce<R>,
+        at: *const u32,
+        force: V2<L>,
+        torque: V1<L>,
+    ) {
+        let mut columns = [[R::default(); WIDEST]; 3];
+        // SAFETY: see `separation`; no bundle is wider than the buffers.
+        unsafe {
+            for (column, part) in columns.iter_mut().zip([force.0[0], force.0[1], torque.0[0]]) {
+                part.store(column.as_mut_ptr());
+            }
+            for lane in 0..L::WIDTH {
+                let numbers = &mut (*forces.wrapping_add(*at.add(lane) as usize)).numbers;
+                for (number, column) in numbers.iter_mut().zip(&columns) {
+                    *number = number.add(column[lane]);
+                }
+            }
+        }
+    }
+    /// Force and torque lie in one row, so torques cost nothing.
+    #[inline(always)]
+    unsafe fn scatter_pair<L: Gather<Scalar = R>, const TORQUES: u8>(
+        of_a: *mut PlanarForce<R>,
+        a: *const u32,
+        of_b: *mut PlanarForce<R>,
+        b: *const u32,
+        force: V2<L>,
+        torques: [V1<L>; 2],
+    ) {
+        let [on_a, on_b] = torques;
+        // SAFETY: see `separation`.
+        unsafe { L::scatter_discs(of_a, a, of_b, b, force.0, on_a.0[0], on_b.0[0]) };
+    }
 }

@@ -3,8 +3,8 @@
 use super::{Passing, Space, V3, Vector};
 use std::marker::PhantomData;
 
-use crate::lane::{Lane, Real};
-use crate::state::Body;
+use crate::lane::{Gather, Lane, NONE, Real};
+use crate::state::{Body, Force};
 
 /// Spheres in space; `R` is what velocities, forces and memories of contacts are kept in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -114,14 +114,78 @@ impl<R: Real> Space for Spatial<R> {
         shear
     }
 
-    fn body(position: [f64; 3], velocity: [f64; 3], spin: [f64; 3]) -> Body<R> {
-        let row = |v: [f64; 3]| [v[0], v[1], v[2], 0.0].map(R::of);
-        let [x, y, z] = position;
-        Body { aligned: [], position: [x, y, z, 0.0], velocity: row(velocity), spin: row(spin) }
+    type Body = Body<R>;
+    type Force = Force<R>;
+
+    #[inline(always)]
+    unsafe fn separation<L: Gather<Scalar = R>>(
+        bodies: *const Body<R>,
+        a: *const u32,
+        b: *const u32,
+    ) -> V3<L::Wide> {
+        // SAFETY: the caller vouches for the indices; so throughout.
+        V3(unsafe { L::separation(bodies, a, b) })
     }
-    fn motion(body: &Body<R>) -> ([f64; 3], [f64; 3]) {
-        let three = |v: &[R; 4]| [v[0], v[1], v[2]].map(R::into);
-        (three(&body.velocity), three(&body.spin))
+    #[inline(always)]
+    unsafe fn velocity<L: Gather<Scalar = R>>(bodies: *const Body<R>, a: *const u32, b: *const u32) -> V3<L> {
+        // SAFETY: see `separation`.
+        V3(unsafe { L::difference::<1>(bodies, a, b) })
     }
-    const SPIN_ROW: usize = 2;
+    #[inline(always)]
+    unsafe fn motion<L: Gather<Scalar = R>>(
+        bodies: *const Body<R>,
+        a: *const u32,
+        b: *const u32,
+    ) -> (V3<L>, V3<L>) {
+        // SAFETY: see `separation`.
+        let [velocity, spin_sum] = unsafe { L::motion(bodies, a, b) };
+        (V3(velocity), V3(spin_sum))
+    }
+    #[inline(always)]
+    unsafe fn spins<L: Gather<Scalar = R>>(bodies: *const Body<R>, at: *const u32) -> V3<L> {
+        // SAFETY: see `separation`.
+        V3(unsafe { L::record::<2>(bodies, at) })
+    }
+    #[inline(always)]
+    unsafe fn places<L: Gather<Scalar = R>>(
+        bodies: *const Body<R>,
+        at: *const u32,
+    ) -> ([L::Wide; 3], [L; 3]) {
+        // SAFETY: see `separation`.
+        unsafe { (L::position(bodies, at), L::record::<1>(bodies, at)) }
+    }
+    #[inline(always)]
+    unsafe fn scatter<L: Gather<Scalar = R>, const SPIN: bool>(
+        forces: *mut Force<R>,
+        at: *const u32,
+        force: V3<L>,
+        torque: V3<L>,
+    ) {
+        // SAFETY: see `separation`.
+        unsafe {
+            if SPIN {
+                L::scatter_both(forces, at, force.0, torque.0);
+            } else {
+                L::scatter(forces, at, force.0);
+            }
+        }
+    }
+    #[inline(always)]
+    unsafe fn scatter_pair<L: Gather<Scalar = R>, const TORQUES: u8>(
+        of_a: *mut Force<R>,
+        a: *const u32,
+        of_b: *mut Force<R>,
+        b: *const u32,
+        force: V3<L>,
+        torques: [V3<L>; 2],
+    ) {
+        // SAFETY: see `separation`.
+        unsafe {
+            if TORQUES == NONE {
+                L::scatter_pair(of_a, a, of_b, b, force.0);
+            } else {
+                L::scatter_contact::<TORQUES>(of_a, a, of_b, b, force.0, torques[0].0, torques[1].0);
+            }
+        }
+    }
 }

@@ -5,7 +5,7 @@
 //! to its own in the order of chunks. The chunks depend on the number of particles alone, so sums do not depend on
 //! who computes them.
 
-use super::{ContactList, Force, WallList};
+use super::{ContactList, WallList};
 use crate::lane::Number;
 
 /// Particles per chunk aimed at. Part of the definition of the result (order of sums): changing it changes bits.
@@ -21,20 +21,20 @@ pub fn chunk_bounds(particles: usize) -> Vec<usize> {
 
 /// Forces a chunk exerts on particles of later chunks.
 #[derive(Clone, Debug, Default)]
-pub struct Ghosts<T: Number> {
+pub struct Ghosts<F> {
     /// The particles, ascending.
     pub particles: Vec<u32>,
     /// What they feel from this chunk.
-    pub forces: Vec<Force<T>>,
+    pub forces: Vec<F>,
     /// Place in `particles` of b of every outer contact.
     pub targets: Vec<u32>,
     /// Whether they changed since the other chunks were told.
     pub changed: bool,
 }
 
-/// One chunk: its particles are `start..end`.
+/// One chunk: its particles are `start..end`; forces are records `F`.
 #[derive(Clone, Debug, Default)]
-pub struct Chunk<T: Number> {
+pub struct Chunk<T: Number, F> {
     /// First particle.
     pub start: usize,
     /// One past the last particle.
@@ -44,7 +44,7 @@ pub struct Chunk<T: Number> {
     /// Contacts with b in a later chunk.
     pub outer: ContactList<T>,
     /// Ghosts of the outer contacts.
-    pub ghosts: Ghosts<T>,
+    pub ghosts: Ghosts<F>,
     /// Ghosts of earlier chunks that lie in this one: chunk, places among its ghosts.
     pub incoming: Vec<(usize, std::ops::Range<usize>)>,
     /// Contacts with each wall.
@@ -69,7 +69,7 @@ pub struct Chunk<T: Number> {
     pub spare: [ContactList<T>; 2],
 }
 
-impl<T: Number> Chunk<T> {
+impl<T: Number, F: Default> Chunk<T, F> {
     /// An empty chunk of particles `start..end` with contact memories of `slots`.
     #[must_use]
     pub fn new(start: usize, end: usize, slots: usize) -> Self {
@@ -94,7 +94,7 @@ impl<T: Number> Chunk<T> {
             + self.near.capacity() * size_of::<(u32, u32)>()
             + self.selected.iter().map(Vec::capacity).sum::<usize>() * size_of::<(u32, u32)>()
             + (self.outermost.capacity() + self.spenders.capacity()) * size_of::<u32>()
-            + self.ghosts.forces.capacity() * size_of::<Force<T>>()
+            + self.ghosts.forces.capacity() * size_of::<F>()
             + (self.ghosts.particles.capacity() + self.ghosts.targets.capacity()) * size_of::<u32>()
     }
 }

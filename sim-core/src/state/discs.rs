@@ -7,17 +7,16 @@ use crate::lane::{Gather, Lane, Number};
 #[derive(Clone, Debug, PartialEq)]
 pub struct Discs {
     radius: Vec<f64>,
-    inverse_mass: Vec<f64>,
-    inverse_inertia: Vec<f64>,
+    /// 1/mass and 1/inertia.
+    inverses: Vec<[f64; 2]>,
 }
 
 impl Discs {
     /// Discs of these radii, in the order of the slots [d].
     #[must_use]
     pub fn new(radius: Vec<f64>) -> Self {
-        let inverse_mass = radius.iter().map(|r| 1.0 / (4.0 * r * r)).collect();
-        let inverse_inertia = radius.iter().map(|r| 1.0 / (2.0 * r * r * r * r)).collect();
-        Self { radius, inverse_mass, inverse_inertia }
+        let inverses = radius.iter().map(|r| [1.0 / (4.0 * r * r), 1.0 / (2.0 * r * r * r * r)]).collect();
+        Self { radius, inverses }
     }
 }
 
@@ -70,20 +69,18 @@ impl Grains for Discs {
     }
     #[inline(always)]
     fn inverse_mass(&self, at: usize) -> f64 {
-        self.inverse_mass[at]
+        self.inverses[at][0]
     }
     #[inline(always)]
     fn inverse_inertia(&self, at: usize) -> f64 {
-        self.inverse_inertia[at]
+        self.inverses[at][1]
     }
     fn largest_radius(&self) -> f64 {
         self.radius.iter().copied().fold(0.0, f64::max)
     }
     fn permute(&mut self, order: &[u32]) {
-        let by = |values: &[f64]| order.iter().map(|&old| values[old as usize]).collect();
-        self.radius = by(&self.radius);
-        self.inverse_mass = by(&self.inverse_mass);
-        self.inverse_inertia = by(&self.inverse_inertia);
+        self.radius = order.iter().map(|&old| self.radius[old as usize]).collect();
+        self.inverses = order.iter().map(|&old| self.inverses[old as usize]).collect();
     }
 }
 

@@ -1,6 +1,7 @@
 //! Particle records.
 
-use crate::lane::{Gather, Lane, Number};
+use super::{Gain, Kinematics};
+use crate::lane::{Gather, Lane, Number, Real};
 
 /// Kinematics of one particle: three rows of four numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -20,8 +21,7 @@ pub struct Body<T: Number> {
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C, align(32))]
 pub struct Force<T: Number> {
-    /// F_x, F_y, F_z, the torque from [`Number::TORQUE`] on, zeros. Where space deforms (the plane) the third number is the
-    /// torque and nothing follows.
+    /// F_x, F_y, F_z, the torque from [`Number::TORQUE`] on, zeros.
     pub numbers: [T; 8],
 }
 
@@ -43,6 +43,46 @@ impl<T: Number> Force<T> {
     /// One component of M, to write.
     pub fn torque_mut(&mut self, axis: usize) -> &mut T {
         &mut self.numbers[T::TORQUE + axis]
+    }
+}
+
+impl<T: Number> Kinematics for Body<T> {
+    fn new(position: [f64; 3], velocity: [f64; 3], spin: [f64; 3]) -> Self {
+        let row = |v: [f64; 3]| [v[0], v[1], v[2], 0.0].map(T::of);
+        let [x, y, z] = position;
+        Self { aligned: [], position: [x, y, z, 0.0], velocity: row(velocity), spin: row(spin) }
+    }
+    #[inline(always)]
+    fn position(&self) -> [f64; 3] {
+        [self.position[0], self.position[1], self.position[2]]
+    }
+    #[inline(always)]
+    fn motion(&self) -> ([f64; 3], [f64; 3]) {
+        let three = |v: &[T; 4]| [v[0], v[1], v[2]].map(T::into);
+        (three(&self.velocity), three(&self.spin))
+    }
+    fn move_to(&mut self, position: [f64; 3]) {
+        self.position[..3].copy_from_slice(&position);
+    }
+    #[inline(always)]
+    fn inverse_budget(&self) -> f64 {
+        self.position[3]
+    }
+    #[inline(always)]
+    fn set_budget(&mut self, budget: f64) {
+        self.position[3] = 1.0 / budget;
+    }
+    fn with_budget_of(mut self, other: &Self) -> Self {
+        self.position[3] = other.position[3];
+        self
+    }
+}
+
+impl<T: Real> Gain for Force<T> {
+    #[inline(always)]
+    fn gain(&mut self, other: &Self) {
+        // All of it is read before it is written: then a row is an operation or two.
+        self.numbers = std::array::from_fn(|k| self.numbers[k].add(other.numbers[k]));
     }
 }
 
@@ -86,6 +126,11 @@ pub trait Grains: Send + Sync + 'static {
     fn inverse_mass(&self, at: usize) -> f64;
     /// 1/inertia of one particle, as the integrator uses it [1/(m d²)].
     fn inverse_inertia(&self, at: usize) -> f64;
+    /// dt/mass and dt/inertia of one particle.
+    #[inline(always)]
+    fn gains(&self, at: usize, dt: f64) -> [f64; 2] {
+        [dt * self.inverse_mass(at), dt * self.inverse_inertia(at)]
+    }
     /// Largest radius [d].
     fn largest_radius(&self) -> f64;
     /// Follows a new order of the particles: slot k now holds what was in slot `order[k]`.

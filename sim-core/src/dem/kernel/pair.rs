@@ -6,9 +6,9 @@ use std::mem::MaybeUninit;
 use super::Pass;
 use crate::boundary::Boundary;
 use crate::contact::{ContactLaw, Encounter, PairGeometry, PairMotion, Response};
-use crate::lane::{Gather, Lane, MINUS, OPPOSITE, OTHER, SAME};
+use crate::lane::{Gather, Lane, NONE, OTHER, SAME};
 use crate::space::{Space, Vector};
-use crate::state::{Force, Grains};
+use crate::state::Grains;
 
 /// Where the bodies of a contact or group of contacts are and how they move. What a law, its space or its particles
 /// do not need is never written.
@@ -112,7 +112,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         constants: *const S::Real,
     ) -> Meeting<S, L> {
         // SAFETY: the caller vouches for the indices; so throughout.
-        let separation: S::Vector<L::Wide> = S::vector(unsafe { L::separation(self.bodies, a, b) });
+        let separation: S::Vector<L::Wide> = unsafe { S::separation::<L>(self.bodies, a, b) };
         let separation = self.boundary.nearest(separation);
         let square = separation.dot(separation);
         // Written out, here and below: a closure that is not inlined into the caller with the features makes a call of
@@ -135,40 +135,26 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         // SAFETY: see above.
         unsafe {
             let between = if C::NEEDS_SPIN && G::EQUAL {
-                let [between, spin_sum] = L::motion(self.bodies, a, b);
-                meeting.spin_sum.write(S::spin(spin_sum));
+                let (between, spin_sum) = S::motion::<L>(self.bodies, a, b);
+                meeting.spin_sum.write(spin_sum);
                 if C::ROLLS {
-                    meeting.spin_difference.write(S::spin(L::difference::<2>(self.bodies, a, b)));
+                    let of_a = S::spins::<L>(self.bodies, a);
+                    let of_b = S::spins::<L>(self.bodies, b);
+                    meeting.spin_difference.write(of_b.add_scaled(L::splat(-1.0), of_a));
                 }
                 between
             } else {
-                L::difference::<1>(self.bodies, a, b)
+                S::velocity::<L>(self.bodies, a, b)
             };
-            meeting.velocity.write(self.boundary.carried(apart, S::vector(between)));
+            meeting.velocity.write(self.boundary.carried(apart, between));
             if C::NEEDS_SPIN && !G::EQUAL {
-                meeting.own_spins.write([self.spin(a), self.spin(b)]);
+                meeting.own_spins.write([S::spins::<L>(self.bodies, a), S::spins::<L>(self.bodies, b)]);
             }
         }
         if B::DEFORMS {
             meeting.separation.write(separation);
         }
         meeting
-    }
-
-    /// Spins of bodies.
-    ///
-    /// # Safety
-    /// `at` points to `L::WIDTH` indices of bodies.
-    #[inline(always)]
-    unsafe fn spin<L: Gather<Scalar = S::Real>>(&self, at: *const u32) -> S::Spin<L> {
-        // SAFETY: the caller vouches for the indices.
-        unsafe {
-            if S::SPIN_ROW == 1 {
-                S::spin(L::record::<1>(self.bodies, at))
-            } else {
-                S::spin(L::record::<2>(self.bodies, at))
-            }
-        }
     }
 
     /// What the law sees of a meeting.
@@ -352,7 +338,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         Evaluated { normal, separation, overlap, response, force, torque_a, torque_b }
     }
 
-    /// Adds the forces of pair contacts; those of b go to `forces_b` at `b_target`. Returns −F_α r_α where space deforms,
+    /// Adds the forces of pair contacts; those of b go to `forces_b` at `b_target`. Returns −F_α r_α where space deforms (the plane),
     /// each rounded to a multiple of [`VIRIAL_UNIT`]: sums of such numbers are exact, so they depend neither on their
     /// order nor on what else is listed.
     ///
@@ -362,40 +348,27 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     pub(super) unsafe fn apply<L: Gather<Scalar = S::Real>>(
         &self,
         a: *const u32,
-        forces_b: *mut Force<S::Real>,
+        forces_b: *mut S::Force,
         b_target: *const u32,
         contact: &Evaluated<S, L>,
     ) -> [L::Wide; 2] {
-        let zero = L::splat(0.0);
-        let force = S::vector_record(contact.force);
-        let (torque_a, torque_b) = (S::spin_record(contact.torque_a), S::spin_record(contact.torque_b));
-        if B::DEFORMS {
-            const {
-                assert!(!B::DEFORMS || S::DIMENSION == 2, "only in the plane force and torque fit into a row")
-            };
-            let on_a = [force[0], force[1], torque_a[2]];
-            let on_b = [force[0], force[1], zero.sub(torque_b[2])];
-            // SAFETY: the caller vouches for the indices; so below.
-            unsafe { L::scatter_pair::<MINUS>(self.forces, a, forces_b, b_target, on_a, on_b) };
-            let separation = S::vector_record(contact.separation);
-            let shift = L::Wide::splat(VIRIAL_SHIFT);
-            let [x, y, _] = separation;
-            return [
-                force[0].widen().neg_mul_add(x, shift).sub(shift),
-                force[1].widen().neg_mul_add(y, shift).sub(shift),
-            ];
-        }
-        // SAFETY: see above.
+        let (force, torques) = (contact.force, [contact.torque_a, contact.torque_b]);
+        // SAFETY: the caller vouches for the indices.
         unsafe {
             if !C::NEEDS_SPIN {
-                L::scatter_pair::<OPPOSITE>(self.forces, a, forces_b, b_target, force, force);
+                S::scatter_pair::<L, NONE>(self.forces, a, forces_b, b_target, force, torques);
             } else if G::EQUAL && !C::ROLLS {
-                L::scatter_contact::<SAME>(self.forces, a, forces_b, b_target, force, torque_a, torque_a);
+                S::scatter_pair::<L, SAME>(self.forces, a, forces_b, b_target, force, torques);
             } else {
-                L::scatter_contact::<OTHER>(self.forces, a, forces_b, b_target, force, torque_a, torque_b);
+                S::scatter_pair::<L, OTHER>(self.forces, a, forces_b, b_target, force, torques);
             }
         }
-        [L::Wide::splat(0.0); 2]
+        if !B::DEFORMS {
+            return [L::Wide::splat(0.0); 2];
+        }
+        let ([f_x, f_y, _], [x, y, _]) = (S::vector_record(force), S::vector_record(contact.separation));
+        let shift = L::Wide::splat(VIRIAL_SHIFT);
+        [f_x.widen().neg_mul_add(x, shift).sub(shift), f_y.widen().neg_mul_add(y, shift).sub(shift)]
     }
 }
 

@@ -48,7 +48,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         let axis = ServoWalls::axis(wall);
         let outward = L::splat(ServoWalls::outward(wall));
         // SAFETY: the caller vouches for the indices; so throughout.
-        let (position, own) = unsafe { (L::position(self.bodies, a), L::record::<1>(self.bodies, a)) };
+        let (position, own) = unsafe { S::places::<L>(self.bodies, a) };
         let zero = L::splat(0.0);
         let mut normal = [zero; 3];
         normal[axis] = outward;
@@ -75,7 +75,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             PairMotion { velocity, rim: None, spin_sum: none, spin_difference: none };
         if C::NEEDS_SPIN {
             // SAFETY: see above.
-            motion.spin_sum = S::spin(unsafe { L::record::<2>(self.bodies, a) });
+            motion.spin_sum = unsafe { S::spins::<L>(self.bodies, a) };
             motion.spin_difference = none.add_scaled(L::splat(-1.0), motion.spin_sum);
         }
         let spin_difference = motion.spin_difference;
@@ -195,11 +195,11 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         let mut lanes = [S::Real::default(); WIDEST];
         // SAFETY: the caller vouches for indices and forces; no bundle is wider than the lanes.
         unsafe {
-            let force = S::vector_record(contact.force);
+            let (force, torque) = (contact.force, contact.torque_a);
             if C::NEEDS_SPIN {
-                L::scatter_both(self.forces, a, force, S::spin_record(contact.torque_a));
+                S::scatter::<L, true>(self.forces, a, force, torque);
             } else {
-                L::scatter(self.forces, a, force);
+                S::scatter::<L, false>(self.forces, a, force, torque);
             }
             contact.response.normal.store(lanes.as_mut_ptr());
         }
