@@ -262,6 +262,7 @@ impl<S: Moves, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dynamics for Dem<S, 
         }
         let mut bytes = self.bodies.capacity() * size_of::<S::Body>()
             + self.forces.capacity() * size_of::<S::Force>()
+            + self.gains.capacity() * size_of::<[S::Real; 4]>()
             + (self.lists.near_at.capacity() + self.lists.listed_at.capacity()) * size_of::<[f64; 3]>()
             + self.lists.budget.capacity() * size_of::<f64>()
             + (self.lists.near_below.0.capacity() + self.lists.near_below.1.capacity()) * size_of::<u32>()

@@ -40,6 +40,8 @@ pub struct Dem<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
     /// once for every thread: a chunk moves right after its forces, and a small buffer used anew for every chunk stays in a
     /// cache that all the forces would be too large for.
     pub(super) forces: Vec<S::Force>,
+    /// In the plane, where sizes differ: dt/m, dt/m, dt/I, 0 by slot.
+    pub(super) gains: Vec<[S::Real; 4]>,
     pub(super) chunks: Vec<Chunk<S::Real, S::Force>>,
     pub(super) lists: Lists,
     pub(super) space: PhantomData<S>,
@@ -143,6 +145,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             bodies,
             drag: Drag::None,
             drag_by_slot: Vec::new(),
+            gains: Vec::new(),
             chunks,
             lists: Lists::default(),
             space: PhantomData,
@@ -253,7 +256,21 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             }
         }
         self.dt = dt;
+        self.work_out_gains();
         self.refresh();
+    }
+
+    /// What the motion of discs takes from their sizes and the time step.
+    pub(super) fn work_out_gains(&mut self) {
+        if S::DIMENSION != 2 {
+            return;
+        }
+        let gain = |slot: usize| {
+            let per_mass = self.dt * self.grains.inverse_mass(slot);
+            let per_inertia = if C::NEEDS_SPIN { self.dt * self.grains.inverse_inertia(slot) } else { 0.0 };
+            [per_mass, per_mass, per_inertia, 0.0].map(S::Real::of)
+        };
+        self.gains = (0..self.len()).map(gain).collect();
     }
 }
 

@@ -33,13 +33,15 @@ impl DragRates<'_> {
 
 /// What moves particles in one step beside contact forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Deformation<'a> {
+pub struct Deformation<'a, T> {
     /// Strain rates at t_n + dt/2, in the plane [1/τ].
     pub rate: [f64; 3],
     /// Coefficient c of the local damping: every component of force and torque counts 1 − c sign(F v), in the plane [1].
     pub local_damping: f64,
     /// Drag on velocities relative to the deformation, and on spins.
     pub drag: DragRates<'a>,
+    /// dt/m, dt/m, dt/I, 0 of every particle of the chunk, in the plane.
+    pub gains: &'a [[T; 4]],
 }
 
 /// A space whose bodies can be moved.
@@ -55,7 +57,7 @@ pub trait Moves: Space {
         forces: &mut [Self::Force],
         first: usize,
         grains: &G,
-        deformation: Deformation<'_>,
+        deformation: Deformation<'_, Self::Real>,
         dt: f64,
     ) -> f64;
 }
@@ -67,7 +69,7 @@ impl<R: Real> Moves for Spatial<R> {
         forces: &mut [Force<R>],
         first: usize,
         grains: &G,
-        deformation: Deformation<'_>,
+        deformation: Deformation<'_, R>,
         dt: f64,
     ) -> f64 {
         // SAFETY: the caller vouches.
@@ -81,11 +83,11 @@ impl<R: Real> Moves for Planar<R> {
         bodies: &mut [PlanarBody<R>],
         forces: &mut [PlanarForce<R>],
         first: usize,
-        grains: &G,
-        deformation: Deformation<'_>,
+        _: &G,
+        deformation: Deformation<'_, R>,
         dt: f64,
     ) -> f64 {
         // SAFETY: the caller vouches.
-        unsafe { planar::advance::<R, G, SPIN>(path, bodies, forces, first, grains, deformation, dt) }
+        unsafe { planar::advance(path, bodies, forces, first, deformation, dt) }
     }
 }

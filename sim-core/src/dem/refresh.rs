@@ -210,6 +210,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
     /// Finds the near pairs anew.
     pub(super) fn rebuild(&mut self) {
         self.lists.rebuilds += 1;
+        self.work_out_gains();
         let bodies = &self.bodies;
         self.lists.near_at = bodies.iter().map(Kinematics::position).collect();
         self.lists.near_below.0.clear();

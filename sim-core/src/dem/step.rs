@@ -132,7 +132,9 @@ impl<S: Moves, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             let forces = std::slice::from_raw_parts_mut(forces, end - start);
             let (grains, drag, dt) = (&shared.grains, shared.drag_rates(), shared.dt);
             let rate = if B::DEFORMS { shared.boundary.next_rate(shared.virial(), dt) } else { [0.0; 3] };
-            let deformation = Deformation { rate, local_damping: shared.boundary.local_damping(), drag };
+            let gains = if S::DIMENSION == 2 { &shared.gains[start..end] } else { &[] };
+            let local_damping = shared.boundary.local_damping();
+            let deformation = Deformation { rate, local_damping, drag, gains };
             let rush = if C::NEEDS_SPIN {
                 S::advance::<G, true>(shared.path, bodies, forces, start, grains, deformation, dt)
             } else {

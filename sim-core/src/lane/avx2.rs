@@ -303,7 +303,8 @@ impl Widen for Avx2 {
         self
     }
     #[inline(always)]
-    fn meet(square: Self, reach: Self) -> [Self; 2] {
+    fn meet(square: Self, radius_a: Self, radius_b: Self) -> [Self; 2] {
+        let reach = radius_a.add(radius_b);
         let (distance, inverse_square) = (square.sqrt(), Self::splat(1.0).div(square));
         [reach.sub(distance), distance.mul(inverse_square)]
     }

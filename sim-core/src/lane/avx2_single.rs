@@ -275,7 +275,8 @@ impl Widen for Avx2Single {
         }
     }
     #[inline(always)]
-    fn meet(square: Two<Avx2>, reach: Two<Avx2>) -> [Self; 2] {
+    fn meet(square: Two<Avx2>, radius_a: Self, radius_b: Self) -> [Self; 2] {
+        let reach = radius_a.widen().add(radius_b.widen());
         // The same operations as in the plain path, which says why.
         let gap = Self::narrow(reach.neg_mul_add(reach, square));
         let square = Self::narrow(square);
@@ -283,7 +284,7 @@ impl Widen for Avx2Single {
         let minus = Self::splat(-0.0);
         // SAFETY: see `splat`.
         let opposite = Self(unsafe { _mm256_xor_ps(gap.0, minus.0) });
-        [opposite.div(distance.add(Self::narrow(reach))), distance.mul(inverse_square)]
+        [opposite.div(distance.add(radius_a.add(radius_b))), distance.mul(inverse_square)]
     }
 }
 

@@ -99,8 +99,8 @@ macro_rules! scalar {
                 self.into()
             }
             #[inline(always)]
-            fn meet(square: f64, reach: f64) -> [Self; 2] {
-                $meet(square, reach)
+            fn meet(square: f64, radius_a: Self, radius_b: Self) -> [Self; 2] {
+                $meet(square, radius_a, radius_b)
             }
         }
 
@@ -260,7 +260,8 @@ scalar!(f32, meet_single);
 
 /// Overlap and 1/distance; root and quotient side by side rather than one after the other.
 #[inline(always)]
-fn meet_double(square: f64, reach: f64) -> [f64; 2] {
+fn meet_double(square: f64, radius_a: f64, radius_b: f64) -> [f64; 2] {
+    let reach = radius_a + radius_b;
     let (distance, inverse_square) = (square.sqrt(), 1.0 / square);
     [reach - distance, distance * inverse_square]
 }
@@ -268,11 +269,12 @@ fn meet_double(square: f64, reach: f64) -> [f64; 2] {
 /// Overlap and 1/distance. In single precision reach − distance would be rounded to 1e-7 of the distance, more than
 /// some overlaps; the difference of squares is exact where it is taken, in double precision.
 #[inline(always)]
-fn meet_single(square: f64, reach: f64) -> [f32; 2] {
+fn meet_single(square: f64, radius_a: f32, radius_b: f32) -> [f32; 2] {
+    let reach = f64::from(radius_a) + f64::from(radius_b);
     let gap = f32::of((-reach).mul_add(reach, square));
     let square = f32::of(square);
     let (distance, inverse_square) = (square.sqrt(), 1.0 / square);
-    [-gap / (distance + f32::of(reach)), distance * inverse_square]
+    [-gap / (distance + (radius_a + radius_b)), distance * inverse_square]
 }
 
 impl Real for f64 {

@@ -126,11 +126,6 @@ pub trait Grains: Send + Sync + 'static {
     fn inverse_mass(&self, at: usize) -> f64;
     /// 1/inertia of one particle, as the integrator uses it [1/(m d²)].
     fn inverse_inertia(&self, at: usize) -> f64;
-    /// dt/mass and dt/inertia of one particle.
-    #[inline(always)]
-    fn gains(&self, at: usize, dt: f64) -> [f64; 2] {
-        [dt * self.inverse_mass(at), dt * self.inverse_inertia(at)]
-    }
     /// Largest radius [d].
     fn largest_radius(&self) -> f64;
     /// Follows a new order of the particles: slot k now holds what was in slot `order[k]`.

@@ -121,7 +121,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         let apart: S::Vector<L> = S::vector([L::narrow(x), L::narrow(y), L::narrow(z)]);
         // SAFETY: see above.
         let [radius_a, radius_b, _] = unsafe { self.grains.pair::<L>(constants) };
-        let [overlap, inverse_distance] = L::meet(square, radius_a.widen().add(radius_b.widen()));
+        let [overlap, inverse_distance] = L::meet(square, radius_a, radius_b);
         let mut meeting = Meeting {
             normal: apart.scale(inverse_distance),
             overlap,

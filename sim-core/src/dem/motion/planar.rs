@@ -3,69 +3,65 @@
 use super::{Deformation, DragRates};
 use crate::dem::kernel::Path;
 use crate::lane::Real;
-use crate::state::{Grains, PlanarBody, PlanarForce};
+use crate::state::{PlanarBody, PlanarForce};
 
 /// See [`super::Moves::advance`].
 ///
 /// # Safety
 /// As there.
-pub(super) unsafe fn advance<T: Real, G: Grains, const SPIN: bool>(
+pub(super) unsafe fn advance<T: Real>(
     path: Path,
     bodies: &mut [PlanarBody<T>],
     forces: &mut [PlanarForce<T>],
     first: usize,
-    grains: &G,
-    deformation: Deformation<'_>,
+    deformation: Deformation<'_, T>,
     dt: f64,
 ) -> f64 {
     // SAFETY: the path was detected.
     unsafe {
         match path {
-            Path::Plain => with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt),
+            Path::Plain => with_space(bodies, forces, first, deformation, dt),
             #[cfg(target_arch = "x86_64")]
-            Path::PlainFma => with_space_fma::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt),
+            Path::PlainFma => with_space_fma(bodies, forces, first, deformation, dt),
             #[cfg(target_arch = "x86_64")]
-            Path::Avx2 => with_space_avx2::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt),
+            Path::Avx2 => with_space_avx2(bodies, forces, first, deformation, dt),
         }
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "fma")]
-fn with_space_fma<T: Real, G: Grains, const SPIN: bool>(
+fn with_space_fma<T: Real>(
     bodies: &mut [PlanarBody<T>],
     forces: &mut [PlanarForce<T>],
     first: usize,
-    grains: &G,
-    deformation: Deformation<'_>,
+    deformation: Deformation<'_, T>,
     dt: f64,
 ) -> f64 {
-    with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt)
+    with_space(bodies, forces, first, deformation, dt)
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma")]
-fn with_space_avx2<T: Real, G: Grains, const SPIN: bool>(
+fn with_space_avx2<T: Real>(
     bodies: &mut [PlanarBody<T>],
     forces: &mut [PlanarForce<T>],
     first: usize,
-    grains: &G,
-    deformation: Deformation<'_>,
+    deformation: Deformation<'_, T>,
     dt: f64,
 ) -> f64 {
-    with_space::<T, G, SPIN>(bodies, forces, first, grains, deformation, dt)
+    with_space(bodies, forces, first, deformation, dt)
 }
 
 #[inline(always)]
-fn with_space<T: Real, G: Grains, const SPIN: bool>(
+fn with_space<T: Real>(
     bodies: &mut [PlanarBody<T>],
     forces: &mut [PlanarForce<T>],
     first: usize,
-    grains: &G,
-    deformation: Deformation<'_>,
+    deformation: Deformation<'_, T>,
     dt: f64,
 ) -> f64 {
-    let Deformation { rate, local_damping: strength, drag } = deformation;
+    let Deformation { rate, local_damping: strength, drag, gains } = deformation;
     let damped = |force: T, velocity: T| {
         let (force, velocity): (f64, f64) = (force.into(), velocity.into());
         let power = force * velocity;
@@ -78,13 +74,13 @@ fn with_space<T: Real, G: Grains, const SPIN: bool>(
             let faster = |_: usize, pull: [T; 4], gain: [T; 4], old: [T; 4]| -> [T; 4] {
                 std::array::from_fn(|c| pull[c].mul_add(gain[c], old[c]))
             };
-            follow::<T, G, SPIN>(bodies, forces, first, grains, rate, dt, faster)
+            follow(bodies, forces, first, gains, rate, dt, faster)
         }
         DragRates::None => {
             let faster = |_: usize, pull: [T; 4], gain: [T; 4], old: [T; 4]| -> [T; 4] {
                 std::array::from_fn(|c| damped(pull[c], old[c]).mul_add(gain[c], old[c]))
             };
-            follow::<T, G, SPIN>(bodies, forces, first, grains, rate, dt, faster)
+            follow(bodies, forces, first, gains, rate, dt, faster)
         }
         DragRates::All(_) | DragRates::Each(_) => {
             let faster = |slot: usize, pull: [T; 4], gain: [T; 4], old: [T; 4]| -> [T; 4] {
@@ -96,7 +92,7 @@ fn with_space<T: Real, G: Grains, const SPIN: bool>(
                     damped(pull[c], old[c]).mul_add(share.mul(gain[c]), keep[c].mul(old[c]))
                 })
             };
-            follow::<T, G, SPIN>(bodies, forces, first, grains, rate, dt, faster)
+            follow(bodies, forces, first, gains, rate, dt, faster)
         }
     }
 }
@@ -104,21 +100,19 @@ fn with_space<T: Real, G: Grains, const SPIN: bool>(
 /// One step of the plane; `faster` takes slot, (F_x, F_y, M, 0), (dt/m, dt/m, dt/I, 0) and (v_x, v_y, ω, inverse budget) at
 /// t − dt/2 to that at t + dt/2. The fourth number gains nothing, so it stays as it is.
 #[inline(always)]
-fn follow<T: Real, G: Grains, const SPIN: bool>(
+fn follow<T: Real>(
     bodies: &mut [PlanarBody<T>],
     forces: &mut [PlanarForce<T>],
     first: usize,
-    grains: &G,
+    gains: &[[T; 4]],
     rate: [f64; 3],
     dt: f64,
     faster: impl Fn(usize, [T; 4], [T; 4], [T; 4]) -> [T; 4],
 ) -> f64 {
     let mut rush = [T::default(); 4];
-    for (k, (body, force)) in bodies.iter_mut().zip(forces).enumerate() {
+    for (k, ((body, force), gain)) in bodies.iter_mut().zip(forces).zip(gains).enumerate() {
         // Row by row, each in one register.
-        let [per_mass, per_inertia] = grains.gains(first + k, dt).map(T::of);
-        let gain = [per_mass, per_mass, if SPIN { per_inertia } else { T::default() }, T::default()];
-        let motion = faster(first + k, force.numbers, gain, body.motion);
+        let motion = faster(first + k, force.numbers, *gain, body.motion);
         force.numbers = [T::default(); 4];
         body.motion = motion;
         for c in 0..2 {
