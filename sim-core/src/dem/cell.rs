@@ -212,9 +212,8 @@ impl<R: Real, G: Grains, C: ContactLaw<Planar<R>>> Dem<Planar<R>, G, PeriodicCel
                     }
                     let constants = super::kernel::constants_of::<G, R>(&self.grains, a, b);
                     // SAFETY: the list holds valid slots, the copy of the memory has room for one lane.
-                    let contact = unsafe {
-                        pass.pair::<R>(&raw const a, &raw const b, memory.as_mut_ptr(), constants.as_ptr())
-                    };
+                    let contact =
+                        unsafe { pass.one_pair(self.path, a, b, memory.as_mut_ptr(), constants.as_ptr()) };
                     visit(a, b, &contact);
                 }
             }

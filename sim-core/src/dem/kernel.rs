@@ -318,6 +318,41 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         }
     }
 
+    /// One pair, to look at: the same bits on every path; fused operations are the machine's own where it has them.
+    ///
+    /// # Safety
+    /// `memory` and `constants` are those of the pair, in the first lane; `path` was chosen by [`Path::choose`] on this machine.
+    pub unsafe fn one_pair(
+        &self,
+        path: Path,
+        a: u32,
+        b: u32,
+        memory: *mut S::Real,
+        constants: *const S::Real,
+    ) -> Evaluated<S, S::Real> {
+        // SAFETY: the caller vouches; the path was detected.
+        unsafe {
+            match path {
+                Path::Plain => self.pair::<S::Real>(&raw const a, &raw const b, memory, constants),
+                #[cfg(target_arch = "x86_64")]
+                Path::PlainFma | Path::Avx2 => self.one_pair_fma(a, b, memory, constants),
+            }
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "fma")]
+    unsafe fn one_pair_fma(
+        &self,
+        a: u32,
+        b: u32,
+        memory: *mut S::Real,
+        constants: *const S::Real,
+    ) -> Evaluated<S, S::Real> {
+        // SAFETY: the caller vouches.
+        unsafe { self.pair::<S::Real>(&raw const a, &raw const b, memory, constants) }
+    }
+
     /// The force pass of one chunk on a path.
     ///
     /// # Safety

@@ -45,9 +45,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
                     let (a, b) = list.pair(k);
                     let constants = constants_of::<G, S::Real>(&self.grains, a, b);
                     // SAFETY: the list holds valid slots, the copy of the memory has room for one lane.
-                    let contact = unsafe {
-                        pass.pair::<S::Real>(&raw const a, &raw const b, recall(list, k), constants.as_ptr())
-                    };
+                    let contact =
+                        unsafe { pass.one_pair(self.path, a, b, recall(list, k), constants.as_ptr()) };
                     let (force, torque_a) =
                         (record::<S>(&contact), doubles::<S>(S::spin_record(contact.torque_a)));
                     let torque_b = doubles::<S>(S::spin_record(contact.torque_b));

@@ -9,6 +9,8 @@ pub struct Discs {
     radius: Vec<f64>,
     /// 1/mass and 1/inertia.
     inverses: Vec<[f64; 2]>,
+    /// The largest radius, which every step asks for [d].
+    largest: f64,
 }
 
 impl Discs {
@@ -16,7 +18,8 @@ impl Discs {
     #[must_use]
     pub fn new(radius: Vec<f64>) -> Self {
         let inverses = radius.iter().map(|r| [1.0 / (4.0 * r * r), 1.0 / (2.0 * r * r * r * r)]).collect();
-        Self { radius, inverses }
+        let largest = radius.iter().copied().fold(0.0, f64::max);
+        Self { radius, inverses, largest }
     }
 }
 
@@ -76,7 +79,7 @@ impl Grains for Discs {
         self.inverses[at][1]
     }
     fn largest_radius(&self) -> f64 {
-        self.radius.iter().copied().fold(0.0, f64::max)
+        self.largest
     }
     fn permute(&mut self, order: &[u32]) {
         self.radius = order.iter().map(|&old| self.radius[old as usize]).collect();
