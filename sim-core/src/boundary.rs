@@ -32,6 +32,13 @@ pub trait Boundary<S: Space>:
         separation
     }
 
+    /// Whether the nearest image of b at this separation is not b itself [d]. Between two sorts of the particles this does not
+    /// change as long as two bodies are near each other.
+    fn crosses(&self, separation: [f64; 3]) -> bool {
+        let _ = separation;
+        false
+    }
+
     /// The place inside that is the same as `position` [d].
     fn inside(&self, position: [f64; 3]) -> [f64; 3] {
         position

@@ -108,6 +108,11 @@ impl<R: Real> Boundary<Planar<R>> for PeriodicCell {
         [nearest(0), nearest(1), 0.0]
     }
 
+    fn crosses(&self, separation: [f64; 3]) -> bool {
+        let crossings = |axis: usize| separation[axis] * (1.0 / self.edges[axis]) + ROUND - ROUND;
+        (crossings(0) != 0.0) | (crossings(1) != 0.0)
+    }
+
     fn inside(&self, position: [f64; 3]) -> [f64; 3] {
         let wrap = |axis: usize| {
             let edge = self.edges[axis];

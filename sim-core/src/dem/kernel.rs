@@ -80,13 +80,14 @@ struct Targets<S: Space> {
 }
 
 impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C> {
-    /// The contacts of a list: whole groups in batches, then what is left; on a plain path one by one.
+    /// The contacts of a list: whole groups in batches, then what is left; on a plain path one by one. Unless `IMAGES`, none
+    /// crosses a border of the space.
     ///
     /// # Safety
     /// The list holds valid indices and memory for its groups; the forces of its particles a and those of `targets`
     /// are writable and no other thread touches them.
     #[inline(always)]
-    unsafe fn contacts<L: Gather<Scalar = S::Real>>(
+    unsafe fn contacts<L: Gather<Scalar = S::Real>, const IMAGES: bool>(
         &self,
         list: &mut ContactList<S::Real>,
         targets: Targets<S>,
@@ -101,7 +102,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         while first < groups {
             let count = if groups - first < BATCH { groups - first } else { BATCH };
             // SAFETY: these groups are full.
-            let own = unsafe { self.batch::<L>(indices, memory, rows, targets, first, count) };
+            let own = unsafe { self.batch::<L, IMAGES>(indices, memory, rows, targets, first, count) };
             virial = [virial[0].add(own[0]), virial[1].add(own[1])];
             first += count;
         }
@@ -113,7 +114,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
                 let a = indices.add(groups * 2 * group_of);
                 let memory = memory.add(groups * C::SLOTS * group_of);
                 let constants = constants::<G, S::Real>(rows, groups, 0);
-                let contact = self.pair::<L>(a, a.add(group_of), memory, constants).keep(left);
+                let contact = self.pair::<L, IMAGES>(a, a.add(group_of), memory, constants).keep(left);
                 self.apply_group::<L>(indices, targets, groups, &contact, &mut virial);
             }
         }
@@ -125,7 +126,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
                 let a = indices.add(group * 2 * group_of + lane);
                 let memory = memory.add(group * C::SLOTS * group_of + lane);
                 let constants = constants::<G, S::Real>(rows, group, lane);
-                let contact = self.pair::<L>(a, a.add(group_of), memory, constants);
+                let contact = self.pair::<L, IMAGES>(a, a.add(group_of), memory, constants);
                 let target = targets.at.add(group * targets.stride + lane);
                 let own = self.apply::<L>(a, targets.forces, target, &contact);
                 rest[0] += wide_sum(own[0]);
@@ -144,7 +145,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// # Safety
     /// As for `contacts`; the groups are full and at most [`BATCH`].
     #[inline(always)]
-    unsafe fn batch<L: Gather<Scalar = S::Real>>(
+    unsafe fn batch<L: Gather<Scalar = S::Real>, const IMAGES: bool>(
         &self,
         indices: *const u32,
         memory: *mut S::Real,
@@ -164,7 +165,11 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             while k < count {
                 let a = indices.add((first + k) * 2 * group_of);
                 let constants = constants::<G, S::Real>(rows, first + k, 0);
-                meetings.add(k).write(MaybeUninit::new(self.meet::<L>(a, a.add(group_of), constants)));
+                meetings.add(k).write(MaybeUninit::new(self.meet::<L, IMAGES>(
+                    a,
+                    a.add(group_of),
+                    constants,
+                )));
                 k += 1;
             }
             k = 0;
@@ -295,7 +300,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             stride: 2 * group_of,
         };
         // SAFETY: the list holds valid indices of this chunk.
-        let of_inner = unsafe { self.contacts::<L>(&mut chunk.inner, inner) };
+        let of_inner = unsafe { self.contacts::<L, false>(&mut chunk.inner, inner) };
 
         if let Some(walls) = self.walls {
             for wall in 0..6 {
@@ -312,7 +317,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             stride: group_of,
         };
         // SAFETY: the list holds valid indices and there is a ghost for every b.
-        let of_outer = unsafe { self.contacts::<L>(&mut chunk.outer, outer) };
+        let of_outer = unsafe { self.contacts::<L, true>(&mut chunk.outer, outer) };
         if B::DEFORMS {
             chunk.virial = [of_inner[0] + of_outer[0], of_inner[1] + of_outer[1], 0.0];
         }
@@ -333,7 +338,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         // SAFETY: the caller vouches; the path was detected.
         unsafe {
             match path {
-                Path::Plain => self.pair::<S::Real>(&raw const a, &raw const b, memory, constants),
+                Path::Plain => self.pair::<S::Real, true>(&raw const a, &raw const b, memory, constants),
                 #[cfg(target_arch = "x86_64")]
                 Path::PlainFma | Path::Avx2 => self.one_pair_fma(a, b, memory, constants),
             }
@@ -350,7 +355,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         constants: *const S::Real,
     ) -> Evaluated<S, S::Real> {
         // SAFETY: the caller vouches.
-        unsafe { self.pair::<S::Real>(&raw const a, &raw const b, memory, constants) }
+        unsafe { self.pair::<S::Real, true>(&raw const a, &raw const b, memory, constants) }
     }
 
     /// The force pass of one chunk on a path.

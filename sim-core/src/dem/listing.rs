@@ -39,7 +39,8 @@ pub(super) fn list_pairs<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>>(
     }
 }
 
-/// Chooses the near pairs of a chunk whose gap may close while the budgets last, in order.
+/// Chooses the near pairs of a chunk whose gap may close while the budgets last, in order: those inside the chunk, and those to
+/// later chunks or across a border of the space.
 fn select<S: Space, G: Grains, B: Boundary<S>>(
     chunk: &mut Chunk<S::Real, S::Force>,
     bodies: &[S::Body],
@@ -57,10 +58,11 @@ fn select<S: Space, G: Grains, B: Boundary<S>>(
     for &(a, b) in near.iter() {
         let (i, j) = (a as usize, b as usize);
         let (x, y) = (bodies[i].position(), bodies[j].position());
-        let [dx, dy, dz] = boundary.separation([y[0] - x[0], y[1] - x[1], y[2] - x[2]]);
+        let apart = [y[0] - x[0], y[1] - x[1], y[2] - x[2]];
+        let [dx, dy, dz] = boundary.separation(apart);
         let cutoff = (grains.radius(i) + budget[i]) + (grains.radius(j) + budget[j]) + slack;
         let may_touch = usize::from(dx * dx + dy * dy + dz * dz < cutoff * cutoff);
-        let own = usize::from(b < end);
+        let own = usize::from((b < end) & !boundary.crosses(apart));
         inner[inside] = (a, b);
         outer[across] = (a, b);
         inside += may_touch & own;

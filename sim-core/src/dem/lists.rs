@@ -69,8 +69,10 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             chunk.walls.iter_mut().for_each(ContactList::clear);
             for contact in &pairs {
                 if (chunk.start..chunk.end).contains(&(contact.a as usize)) {
-                    let list =
-                        if (contact.b as usize) < chunk.end { &mut chunk.inner } else { &mut chunk.outer };
+                    let [x, y] = [contact.a, contact.b].map(|slot| self.bodies[slot as usize].position());
+                    let apart = std::array::from_fn(|k| y[k] - x[k]);
+                    let inside = (contact.b as usize) < chunk.end && !self.boundary.crosses(apart);
+                    let list = if inside { &mut chunk.inner } else { &mut chunk.outer };
                     write(list, contact.a, contact.b, &contact.memory);
                 }
             }

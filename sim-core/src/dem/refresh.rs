@@ -162,7 +162,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
         }
     }
 
-    /// One thread, last: tells every chunk which ghosts of earlier chunks lie in it.
+    /// One thread, last: tells every chunk which ghosts of earlier chunks, and of its own, lie in it.
     fn finish_refresh(&mut self) {
         self.lists.used = 0.0;
         self.lists.due = false;
@@ -174,13 +174,13 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Dem<S, G, B, C> {
             chunk.ghosts.changed = false;
         }
         for c in 0..self.chunks.len() {
-            let (earlier, later) = self.chunks.split_at_mut(c + 1);
-            let (particles, mut from) = (&earlier[c].ghosts.particles, 0);
-            for target in later {
-                let to =
-                    from + particles[from..].partition_point(|&particle| (particle as usize) < target.end);
+            let mut from = 0;
+            // A chunk may have ghosts in itself, across a border of the space.
+            for target in c..self.chunks.len() {
+                let (particles, end) = (&self.chunks[c].ghosts.particles, self.chunks[target].end);
+                let to = from + particles[from..].partition_point(|&particle| (particle as usize) < end);
                 if from < to {
-                    target.incoming.push((c, from..to));
+                    self.chunks[target].incoming.push((c, from..to));
                 }
                 from = to;
             }

@@ -1,8 +1,8 @@
 //! Fixed chunks of particles: the unit of work of a thread, and what makes any number of threads give the same bits.
 //!
 //! A chunk owns a range of particles and the contacts whose lower index lies in it. Contacts inside the range are
-//! summed in list order. Contacts to a later chunk add to *ghost* forces of this chunk, which the later chunk adds
-//! to its own in the order of chunks. The chunks depend on the number of particles alone, so sums do not depend on
+//! summed in list order. Contacts to a later chunk, or across a border of the space, add to *ghost* forces of this chunk, which the
+//! other chunk adds to its own in the order of chunks. The chunks depend on the number of particles alone, so sums do not depend on
 //! who computes them.
 
 use super::{ContactList, WallList};
@@ -19,7 +19,7 @@ pub fn chunk_bounds(particles: usize) -> Vec<usize> {
     (0..=chunks).map(|c| particles * c / chunks).collect()
 }
 
-/// Forces a chunk exerts on particles of later chunks.
+/// Forces a chunk exerts on particles of later chunks, and on its own across a border of the space.
 #[derive(Clone, Debug, Default)]
 pub struct Ghosts<F> {
     /// The particles, ascending.
@@ -39,13 +39,13 @@ pub struct Chunk<T: Number, F> {
     pub start: usize,
     /// One past the last particle.
     pub end: usize,
-    /// Contacts with both particles in the chunk.
+    /// Contacts with both particles in the chunk and no border of the space between them.
     pub inner: ContactList<T>,
-    /// Contacts with b in a later chunk.
+    /// Contacts with b in a later chunk or across a border of the space.
     pub outer: ContactList<T>,
     /// Ghosts of the outer contacts.
     pub ghosts: Ghosts<F>,
-    /// Ghosts of earlier chunks that lie in this one: chunk, places among its ghosts.
+    /// Ghosts of earlier chunks, or its own, that lie in this one: chunk, places among its ghosts.
     pub incoming: Vec<(usize, std::ops::Range<usize>)>,
     /// Contacts with each wall.
     pub walls: [WallList<T>; 6],

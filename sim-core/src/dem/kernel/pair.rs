@@ -80,13 +80,13 @@ impl<S: Space, L: Gather> Evaluated<S, L> {
 }
 
 impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C> {
-    /// Pair contacts a–b.
+    /// Pair contacts a–b; unless `IMAGES`, no border of the space lies between the two.
     ///
     /// # Safety
     /// `a`, `b` point to `L::WIDTH` indices of bodies, `memory` to the slots and `constants` to the constants of these
     /// contacts.
     #[inline(always)]
-    pub unsafe fn pair<L: Gather<Scalar = S::Real>>(
+    pub unsafe fn pair<L: Gather<Scalar = S::Real>, const IMAGES: bool>(
         &self,
         a: *const u32,
         b: *const u32,
@@ -95,7 +95,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     ) -> Evaluated<S, L> {
         // SAFETY: the caller vouches.
         unsafe {
-            let meeting = self.meet::<L>(a, b, constants);
+            let meeting = self.meet::<L, IMAGES>(a, b, constants);
             self.respond(&meeting, &self.move_on(&meeting, constants), memory, constants)
         }
     }
@@ -105,7 +105,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// # Safety
     /// `a`, `b` point to `L::WIDTH` indices of bodies, `constants` to the constants of these contacts.
     #[inline(always)]
-    pub(super) unsafe fn meet<L: Gather<Scalar = S::Real>>(
+    pub(super) unsafe fn meet<L: Gather<Scalar = S::Real>, const IMAGES: bool>(
         &self,
         a: *const u32,
         b: *const u32,
@@ -113,7 +113,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     ) -> Meeting<S, L> {
         // SAFETY: the caller vouches for the indices; so throughout.
         let separation: S::Vector<L::Wide> = unsafe { S::separation::<L>(self.bodies, a, b) };
-        let separation = self.boundary.nearest(separation);
+        let separation = if IMAGES { self.boundary.nearest(separation) } else { separation };
         let square = separation.dot(separation);
         // Written out, here and below: a closure that is not inlined into the caller with the features makes a call of
         // every instruction.
