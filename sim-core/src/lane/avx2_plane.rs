@@ -2,10 +2,11 @@
 //! spin too. See [`super::Avx2`] for the rules of use; no closures, which are not always inlined.
 
 use std::arch::x86_64::{
-    __m128, __m128d, __m256, _mm_add_ps, _mm_load_pd, _mm_load_ps, _mm_store_ps, _mm_sub_pd, _mm_sub_ps,
-    _mm_unpacklo_pd, _mm256_add_pd, _mm256_load_pd, _mm256_permute2f128_pd, _mm256_set_m128,
-    _mm256_set_m128d, _mm256_shuffle_ps, _mm256_store_pd, _mm256_sub_pd, _mm256_sub_ps, _mm256_unpackhi_pd,
-    _mm256_unpackhi_ps, _mm256_unpacklo_pd, _mm256_unpacklo_ps,
+    __m128, __m128d, __m256, _mm_add_ps, _mm_castps_pd, _mm_load_pd, _mm_load_ps, _mm_store_ps, _mm_sub_pd,
+    _mm_sub_ps, _mm_unpacklo_pd, _mm256_add_pd, _mm256_castps256_ps128, _mm256_load_pd, _mm256_load_ps,
+    _mm256_permute2f128_pd, _mm256_permute2f128_ps, _mm256_set_m128d, _mm256_shuffle_ps, _mm256_store_pd,
+    _mm256_sub_pd, _mm256_sub_ps, _mm256_unpackhi_pd, _mm256_unpackhi_ps, _mm256_unpacklo_pd,
+    _mm256_unpacklo_ps,
 };
 
 use super::{Avx2, Avx2Single, Lane, Plane, Two};
@@ -13,8 +14,6 @@ use crate::state::{PlanarBody, PlanarForce};
 
 /// Doubles before the third and fourth number of the motion of a disc in double precision.
 const SPIN: usize = 4;
-/// Floats before the motion of a disc in mixed precision.
-const MOTION: usize = 4;
 
 /// Spins of two discs in double precision.
 #[inline(always)]
@@ -88,14 +87,20 @@ impl Plane for Avx2 {
     }
 }
 
+/// A disc in mixed precision: position and motion.
+#[inline(always)]
+unsafe fn disc(bodies: *const PlanarBody<f32>, at: *const u32) -> __m256 {
+    // SAFETY: the caller vouches for the index; a disc is 32 bytes, aligned.
+    unsafe { _mm256_load_ps(bodies.add(*at as usize).cast::<f32>()) }
+}
+
 /// Difference of the positions of two discs in mixed precision.
 #[inline(always)]
 unsafe fn apart(bodies: *const PlanarBody<f32>, a: *const u32, b: *const u32) -> __m128d {
-    // SAFETY: the caller vouches for the indices; a disc begins with x, y, aligned.
+    // SAFETY: the caller vouches for the indices.
     unsafe {
-        let of_a = _mm_load_pd(bodies.add(*a as usize).cast::<f64>());
-        let of_b = _mm_load_pd(bodies.add(*b as usize).cast::<f64>());
-        _mm_sub_pd(of_b, of_a)
+        let (of_a, of_b) = (_mm256_castps256_ps128(disc(bodies, a)), _mm256_castps256_ps128(disc(bodies, b)));
+        _mm_sub_pd(_mm_castps_pd(of_b), _mm_castps_pd(of_a))
     }
 }
 
@@ -113,12 +118,8 @@ unsafe fn four_apart(bodies: *const PlanarBody<f32>, a: *const u32, b: *const u3
 /// Motions of discs l and l + 4.
 #[inline(always)]
 unsafe fn motions(bodies: *const PlanarBody<f32>, at: *const u32) -> __m256 {
-    // SAFETY: the caller vouches for the indices; the motion of a disc begins behind x, y, aligned.
-    unsafe {
-        let low = _mm_load_ps(bodies.add(*at as usize).cast::<f32>().add(MOTION));
-        let high = _mm_load_ps(bodies.add(*at.add(4) as usize).cast::<f32>().add(MOTION));
-        _mm256_set_m128(high, low)
-    }
+    // SAFETY: the caller vouches for the indices.
+    unsafe { _mm256_permute2f128_ps::<0x31>(disc(bodies, at), disc(bodies, at.add(4))) }
 }
 
 impl Plane for Avx2Single {
