@@ -69,7 +69,8 @@ impl Model {
             // 3, discs: cohesionless discs start as a gas at the first pressure.
             // 3, spheres: `evidence` asks for the motion that deforms the network and for the trend of Z±; what carries no
             // load is not settled.
-            Self::CohesiveDiscs => 3,
+            // 4, discs: pairs across a border of the cell add to forces after all others (differs by the order of sums).
+            Self::CohesiveDiscs => 4,
             // 4: the balance of the walls is that of their momentum, not of samples of the force on them; how a contact turns
             // and slips in another order of operations (differs by rounding).
             // 5: particles along a Hilbert curve; springs remember their force, and grow and turn in fewer operations
