@@ -219,6 +219,13 @@ fn blown_up_state_is_reported_and_not_continued() {
     let mut dem = spheres(&parameters, &initial, 0.1, Laws::Needed, &fast(1));
     dem.set_motion(&[Motion { particle: 1, velocity: [1e9, 0.0, 0.0], spin: [0.0; 3] }]);
     assert!(dem.run(1000).is_err());
+    // Outside the walls, with a step too short to come back.
+    let outside = at(&[[0.0; 3], [3.6, 0.0, 0.0]], &[[0.0; 3]; 2], 2.5);
+    let mut dem = spheres(&quiet(), &outside, 1e-4, Laws::Needed, &fast(1));
+    assert!(dem.run(64).unwrap_err().what.contains("outside the walls"));
+    let inside = at(&[[0.0; 3], [3.4, 0.0, 0.0]], &[[0.0; 3]; 2], 2.5);
+    let mut dem = spheres(&quiet(), &inside, 1e-4, Laws::Needed, &fast(1));
+    assert!(dem.run(64).is_ok());
 }
 
 #[test]

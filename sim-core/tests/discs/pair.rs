@@ -39,9 +39,9 @@ fn restitution_without_adhesion_is_that_asked_for() {
 #[test]
 fn the_attraction_of_finite_range_is_conservative() {
     // A disc falls into the attraction of another one, bounces on its elastic part and leaves with the speed it had;
-    // the energy error in between is of second order in the step.
+    // the energy error in between is of second order in the step; also when the step is halved amid the collision.
     let parameters = DiscParameters { f0: 1e-4, d0: 0.02, ..ELASTIC };
-    let worst = |dt: f64| {
+    let worst = |dt: f64, halved: bool| {
         let mut dem = pair(&parameters, RADII, 0.025, -2e-3, dt);
         let energy = |dem: &dyn sim_core::dem::CellDynamics| {
             // Velocities of t_n: those of half a step before, half a step on.
@@ -56,16 +56,21 @@ fn the_attraction_of_finite_range_is_conservative() {
         };
         let start = energy(dem.as_ref());
         let mut worst = 0.0_f64;
-        for _ in 0..(60.0 / dt) as u64 {
+        while dem.view().time < 60.0 {
+            if halved && dem.dt() == dt && gap(dem.as_ref()) < 0.015 {
+                dem.set_dt(0.5 * dt);
+            }
             dem.run(1).unwrap();
             worst = worst.max((energy(dem.as_ref()) / start - 1.0).abs());
         }
         assert!(gap(dem.as_ref()) > 0.02, "the disc leaves again");
         worst
     };
-    let errors = [0.2, 0.1, 0.05].map(worst);
-    let order = (errors[0] / errors[2]).log2() / 2.0;
-    assert!(order > 1.8, "{errors:?}");
+    for halved in [false, true] {
+        let errors = [0.2, 0.1, 0.05].map(|dt| worst(dt, halved));
+        let order = (errors[0] / errors[2]).log2() / 2.0;
+        assert!(order > 1.8, "{halved} {errors:?}");
+    }
 }
 
 #[test]
@@ -92,6 +97,25 @@ fn opposite_spins_swing_on_the_rolling_spring() {
     let errors = [0.2, 0.1, 0.05].map(swing);
     let order = (errors[0] / errors[2]).log2() / 2.0;
     assert!(errors[2] < 2e-4 && order > 1.8, "{errors:?}");
+}
+
+#[test]
+fn a_disc_too_fast_for_the_step_is_reported() {
+    // No walls to be outside of; flying past each other at 0.26 and 0.24 d a step.
+    let fly = |velocity: f64| {
+        let initial = InitialDiscs {
+            positions: vec![[2.0, 5.0], [7.0, 5.0]],
+            radii: RADII.to_vec(),
+            velocities: vec![[0.0; 2], [0.0, velocity]],
+            spins: vec![0.0; 2],
+            edges: [10.0; 2],
+            control: CellControl::Fixed,
+        };
+        discs(&TABLE_1, &initial, 0.1, &FAST).run(100)
+    };
+    let fault = fly(2.6).unwrap_err();
+    assert!(fault.what.contains("moves") && fault.step == 64, "{fault:?}");
+    assert!(fly(2.4).is_ok());
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use sim_core::dem::{CellControl, CellDynamics, CellPicture, DiscParameters, discs, restore_discs};
 use sim_core::{KernelChoice, Options};
 
-use crate::support::{FAST, TABLE_1, gas};
+use crate::support::{FAST, TABLE_1, gas, large_gas};
 
 const FREE: CellControl = CellControl::Pressure { pressure: 1e-5, mass: 10.0, cap: 5e-4 };
 
@@ -25,6 +25,28 @@ fn scalar_and_vector_paths_give_the_same_bits() {
                 after(discs(&parameters, &gas(control), 0.1, &options).as_mut(), STEPS)
             };
             assert_eq!(run(KernelChoice::Auto), run(KernelChoice::Scalar));
+        }
+    }
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    // Four chunks, with pairs across their borders and across those of the cell.
+    for mixed in [false, true] {
+        let parameters = DiscParameters { mixed, ..TABLE_1 };
+        let initial = large_gas(FREE);
+        let run = |threads| {
+            let options = Options { threads, kernel: KernelChoice::Auto };
+            let mut dem = discs(&parameters, &initial, 0.1, &options);
+            let (picture, rate) = after(dem.as_mut(), 900);
+            (dem.counters().threads, picture, rate)
+        };
+        let one = run(1);
+        assert!(one.1.contacts.len() > 1000, "{}", one.1.contacts.len());
+        for threads in [2, 3] {
+            let several = run(threads);
+            assert_eq!(several.0, threads as u64);
+            assert_eq!((several.1, several.2), (one.1.clone(), one.2));
         }
     }
 }

@@ -61,19 +61,28 @@ pub fn triangular(columns: usize, pairs: usize, spacing: f64, control: CellContr
     }
 }
 
-/// A fluid of unequal discs that fly and stick: 120 discs at Φ = 0.5.
+/// A fluid of unequal discs that fly and stick.
 pub fn gas(control: CellControl) -> InitialDiscs {
+    fluid(120, control)
+}
+
+/// The same with enough discs for four chunks.
+pub fn large_gas(control: CellControl) -> InitialDiscs {
+    fluid(7000, control)
+}
+
+fn fluid(count: usize, control: CellControl) -> InitialDiscs {
     use rand_pcg::Pcg64;
     use sim_core::packing::hard_discs::{FluidRecipe, hard_disc_fluid, maxwell_velocities};
     let recipe =
-        FluidRecipe { discs: 120, solid_fraction: 0.45, size_ratio: 0.5, clearance: 1.01e-3, sweeps: 5 };
+        FluidRecipe { discs: count, solid_fraction: 0.45, size_ratio: 0.5, clearance: 1.01e-3, sweeps: 5 };
     let mut random = Pcg64::new(11, 1);
     let fluid = hard_disc_fluid(&recipe, &mut random).unwrap();
     let velocities = maxwell_velocities(&fluid.radii, 1e-3, &mut random);
     InitialDiscs {
         positions: fluid.positions,
         velocities,
-        spins: vec![0.0; 120],
+        spins: vec![0.0; count],
         radii: fluid.radii,
         edges: [fluid.edge; 2],
         control,
