@@ -20,7 +20,7 @@ pub(super) const MOST_BUDGET: f64 = 0.5 * NEAR_MARGIN;
 const LEAST_SPEED: f64 = 0.6;
 
 /// Bounds of the number of steps a refresh is meant to last.
-const STEPS_PER_REFRESH: (f64, f64) = (6.0, 120.0);
+const STEPS_PER_REFRESH: (f64, f64) = (6.0, 400.0);
 
 /// Bodies and budgets of a chunk, and the chunk.
 pub(super) type Parts<'a, S> =
