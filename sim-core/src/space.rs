@@ -35,6 +35,9 @@ pub trait Space: Copy + Send + Sync + 'static {
     type Real: Real;
     /// Dimension.
     const DIMENSION: usize;
+    /// Whether root and quotient of a distance are left to the second part of a contact. The first one waits for bodies, which
+    /// has more of them on their way then; where the second part is long enough by itself, that is no gain.
+    const LATE_ROOTS: bool;
     /// A displacement, velocity or force.
     type Vector<L: Lane>: Vector<L>;
     /// An angular velocity or torque: one number in the plane.

@@ -174,7 +174,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             }
             k = 0;
             while k < count {
-                let meeting = (*meetings.add(k)).assume_init_ref();
+                let meeting = (*meetings.add(k)).assume_init_mut();
                 let constants = constants::<G, S::Real>(rows, first + k, 0);
                 moving.add(k).write(MaybeUninit::new(self.move_on::<L>(meeting, constants)));
                 k += 1;

@@ -303,7 +303,11 @@ impl Widen for Avx2 {
         self
     }
     #[inline(always)]
-    fn meet(square: Self, radius_a: Self, radius_b: Self) -> [Self; 2] {
+    fn gauge(square: Self, _: Self, _: Self) -> [Self; 2] {
+        [square; 2]
+    }
+    #[inline(always)]
+    fn meet([square, _]: [Self; 2], radius_a: Self, radius_b: Self) -> [Self; 2] {
         let reach = radius_a.add(radius_b);
         let (distance, inverse_square) = (square.sqrt(), Self::splat(1.0).div(square));
         [reach.sub(distance), distance.mul(inverse_square)]

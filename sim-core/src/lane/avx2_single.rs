@@ -275,11 +275,13 @@ impl Widen for Avx2Single {
         }
     }
     #[inline(always)]
-    fn meet(square: Two<Avx2>, radius_a: Self, radius_b: Self) -> [Self; 2] {
+    fn gauge(square: Two<Avx2>, radius_a: Self, radius_b: Self) -> [Self; 2] {
         let reach = radius_a.widen().add(radius_b.widen());
+        [Self::narrow(square), Self::narrow(reach.neg_mul_add(reach, square))]
+    }
+    #[inline(always)]
+    fn meet([square, gap]: [Self; 2], radius_a: Self, radius_b: Self) -> [Self; 2] {
         // The same operations as in the plain path, which says why.
-        let gap = Self::narrow(reach.neg_mul_add(reach, square));
-        let square = Self::narrow(square);
         let (distance, inverse_square) = (square.sqrt(), Self::splat(1.0).div(square));
         let minus = Self::splat(-0.0);
         // SAFETY: see `splat`.

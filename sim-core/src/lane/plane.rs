@@ -12,9 +12,10 @@ pub trait Widen: Lane {
     fn narrow(wide: Self::Wide) -> Self;
     /// The same numbers.
     fn widen(self) -> Self::Wide;
-    /// Overlap and 1/distance of bodies with these radii, from the `square` of their distance; exact to rounding whatever the
-    /// overlap.
-    fn meet(square: Self::Wide, radius_a: Self, radius_b: Self) -> [Self; 2];
+    /// What [`Widen::meet`] wants to know of the `square` of the distance of bodies with these radii.
+    fn gauge(square: Self::Wide, radius_a: Self, radius_b: Self) -> [Self; 2];
+    /// Overlap and 1/distance of bodies with these radii, from their gauge; exact to rounding whatever the overlap.
+    fn meet(gauge: [Self; 2], radius_a: Self, radius_b: Self) -> [Self; 2];
 }
 
 /// A bundle that can be read from discs and added to their forces.

@@ -4,7 +4,7 @@ use super::{Gather, Lane, Number, OTHER, Plane, Real, Widen};
 use crate::state::{Body, Force, PlanarBody, PlanarForce};
 
 macro_rules! scalar {
-    ($number:ty, $meet:expr) => {
+    ($number:ty, $gauge:expr, $meet:expr) => {
         impl Lane for $number {
             type Scalar = Self;
             type Mask = bool;
@@ -99,8 +99,12 @@ macro_rules! scalar {
                 self.into()
             }
             #[inline(always)]
-            fn meet(square: f64, radius_a: Self, radius_b: Self) -> [Self; 2] {
-                $meet(square, radius_a, radius_b)
+            fn gauge(square: f64, radius_a: Self, radius_b: Self) -> [Self; 2] {
+                $gauge(square, radius_a, radius_b)
+            }
+            #[inline(always)]
+            fn meet(gauge: [Self; 2], radius_a: Self, radius_b: Self) -> [Self; 2] {
+                $meet(gauge, radius_a, radius_b)
             }
         }
 
@@ -255,24 +259,33 @@ macro_rules! scalar {
     };
 }
 
-scalar!(f64, meet_double);
-scalar!(f32, meet_single);
+scalar!(f64, gauge_double, meet_double);
+scalar!(f32, gauge_single, meet_single);
+
+/// The square is all there is to know.
+#[inline(always)]
+fn gauge_double(square: f64, _: f64, _: f64) -> [f64; 2] {
+    [square; 2]
+}
 
 /// Overlap and 1/distance; root and quotient side by side rather than one after the other.
 #[inline(always)]
-fn meet_double(square: f64, radius_a: f64, radius_b: f64) -> [f64; 2] {
-    let reach = radius_a + radius_b;
+fn meet_double([square, _]: [f64; 2], radius_a: f64, radius_b: f64) -> [f64; 2] {
     let (distance, inverse_square) = (square.sqrt(), 1.0 / square);
-    [reach - distance, distance * inverse_square]
+    [(radius_a + radius_b) - distance, distance * inverse_square]
 }
 
-/// Overlap and 1/distance. In single precision reach − distance would be rounded to 1e-7 of the distance, more than
+/// The square, and d² − D²: in single precision reach − distance would be rounded to 1e-7 of the distance, more than
 /// some overlaps; the difference of squares is exact where it is taken, in double precision.
 #[inline(always)]
-fn meet_single(square: f64, radius_a: f32, radius_b: f32) -> [f32; 2] {
+fn gauge_single(square: f64, radius_a: f32, radius_b: f32) -> [f32; 2] {
     let reach = f64::from(radius_a) + f64::from(radius_b);
-    let gap = f32::of((-reach).mul_add(reach, square));
-    let square = f32::of(square);
+    [f32::of(square), f32::of((-reach).mul_add(reach, square))]
+}
+
+/// Overlap and 1/distance.
+#[inline(always)]
+fn meet_single([square, gap]: [f32; 2], radius_a: f32, radius_b: f32) -> [f32; 2] {
     let (distance, inverse_square) = (square.sqrt(), 1.0 / square);
     [-gap / (distance + (radius_a + radius_b)), distance * inverse_square]
 }

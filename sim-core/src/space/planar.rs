@@ -23,6 +23,7 @@ pub struct Planar<R = f64>(PhantomData<R>);
 impl<R: Real> Space for Planar<R> {
     type Real = R;
     const DIMENSION: usize = 2;
+    const LATE_ROOTS: bool = true;
     type Vector<L: Lane> = V2<L>;
     type Spin<L: Lane> = V1<L>;
     type Across<L: Lane> = PlanarAcross<L>;

@@ -49,6 +49,7 @@ fn sub_cross<L: Lane>(start: V3<L>, a: V3<L>, b: V3<L>) -> V3<L> {
 impl<R: Real> Space for Spatial<R> {
     type Real = R;
     const DIMENSION: usize = 3;
+    const LATE_ROOTS: bool = false;
     type Vector<L: Lane> = V3<L>;
     type Spin<L: Lane> = V3<L>;
     /// n − (dt/2) dn/dt [1].

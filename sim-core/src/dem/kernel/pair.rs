@@ -28,6 +28,16 @@ pub(super) struct Meeting<S: Space, L: Gather> {
     separation: MaybeUninit<S::Vector<L::Wide>>,
 }
 
+impl<S: Space, L: Gather> Meeting<S, L> {
+    /// Separation and gauge, which are where normal, overlap and inverse distance will be, become these.
+    #[inline(always)]
+    fn measure(&mut self, radius_a: L, radius_b: L) {
+        let [overlap, inverse_distance] = L::meet([self.inverse_distance, self.overlap], radius_a, radius_b);
+        (self.overlap, self.inverse_distance) = (overlap, inverse_distance);
+        self.normal = self.normal.scale(inverse_distance);
+    }
+}
+
 /// How they move against each other.
 #[derive(Clone, Copy)]
 pub(super) struct Moving<S: Space, L: Lane> {
@@ -95,8 +105,9 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     ) -> Evaluated<S, L> {
         // SAFETY: the caller vouches.
         unsafe {
-            let meeting = self.meet::<L, IMAGES>(a, b, constants);
-            self.respond(&meeting, &self.move_on(&meeting, constants), memory, constants)
+            let mut meeting = self.meet::<L, IMAGES>(a, b, constants);
+            let moving = self.move_on(&mut meeting, constants);
+            self.respond(&meeting, &moving, memory, constants)
         }
     }
 
@@ -121,11 +132,11 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         let apart: S::Vector<L> = S::vector([L::narrow(x), L::narrow(y), L::narrow(z)]);
         // SAFETY: see above.
         let [radius_a, radius_b, _] = unsafe { self.grains.pair::<L>(constants) };
-        let [overlap, inverse_distance] = L::meet(square, radius_a, radius_b);
+        let gauge = L::gauge(square, radius_a, radius_b);
         let mut meeting = Meeting {
-            normal: apart.scale(inverse_distance),
-            overlap,
-            inverse_distance,
+            normal: apart,
+            overlap: gauge[1],
+            inverse_distance: gauge[0],
             velocity: MaybeUninit::uninit(),
             spin_sum: MaybeUninit::uninit(),
             spin_difference: MaybeUninit::uninit(),
@@ -153,6 +164,9 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         }
         if B::DEFORMS {
             meeting.separation.write(separation);
+        }
+        if !S::LATE_ROOTS {
+            meeting.measure(radius_a, radius_b);
         }
         meeting
     }
@@ -203,13 +217,18 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     /// Second part: how the bodies move against each other.
     ///
     /// # Safety
-    /// The meeting came from [`Pass::meet`] of this type of pass and these constants.
+    /// The meeting came from [`Pass::meet`] of this type of pass and these constants, and has been nowhere since.
     #[inline(always)]
     pub(super) unsafe fn move_on<L: Gather<Scalar = S::Real>>(
         &self,
-        meeting: &Meeting<S, L>,
+        meeting: &mut Meeting<S, L>,
         constants: *const S::Real,
     ) -> Moving<S, L> {
+        if S::LATE_ROOTS {
+            // SAFETY: the caller vouches for the constants.
+            let [radius_a, radius_b, _] = unsafe { self.grains.pair::<L>(constants) };
+            meeting.measure(radius_a, radius_b);
+        }
         // SAFETY: the caller vouches.
         let (geometry, motion) = unsafe { self.unfold(meeting, constants) };
         let Encounter { approach, share, slide } = self.law.encounter(&geometry, &motion, L::splat(self.dt));
