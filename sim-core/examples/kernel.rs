@@ -62,5 +62,32 @@ fn main() -> Result<(), Box<dyn Error>> {
             5 * steps
         );
     }
+    compare_threads(&scene, &state, steps)
+}
+
+/// One and two threads in turn, fifteen times: what else happens on the machine meets both.
+#[expect(clippy::print_stdout, reason = "an example that prints")]
+fn compare_threads(scene: &scene::Reduced, state: &[u8], steps: u64) -> Result<(), Box<dyn Error>> {
+    let load = |threads| Bench::load(scene, state, &Options { threads, kernel: KernelChoice::Auto });
+    let mut benches = [load(1)?, load(2)?];
+    if benches[1].counters().threads < 2 {
+        return Ok(());
+    }
+    let mut times = [const { Vec::new() }; 2];
+    for _ in 0..15 {
+        for (bench, times) in benches.iter_mut().zip(&mut times) {
+            let start = Instant::now();
+            bench.run(steps / 4)?;
+            times.push(start.elapsed().as_secs_f64());
+        }
+    }
+    let least = |times: &[f64]| times.iter().copied().fold(f64::INFINITY, f64::min);
+    let mut ratios: Vec<f64> = times[0].iter().zip(&times[1]).map(|(one, two)| one / two).collect();
+    ratios.sort_unstable_by(f64::total_cmp);
+    println!(
+        "two threads: {:.2} times one (smallest of fifteen in turn), {:.2} times (median of neighbours)",
+        least(&times[0]) / least(&times[1]),
+        ratios[ratios.len() / 2]
+    );
     Ok(())
 }
