@@ -1,5 +1,5 @@
-//! Times the force kernel on prepared states: `cargo run --release -p sim-core --example kernel -- SCENE.json STEPS [scalar] [mixed]`.
-//! The scene is advanced by its `max_steps` first; the state is kept beside the scene as `.state.tmp`.
+//! Times the force kernel on prepared states: `cargo run --release -p sim-core --example kernel -- SCENE.json STEPS [scalar] [avx2] [mixed]`.
+//! `avx2` leaves AVX-512 aside. The scene is advanced by its `max_steps` first; the state is kept beside the scene as `.state.tmp`.
 
 use std::error::Error;
 use std::time::Instant;
@@ -31,9 +31,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             state
         }
     };
-    for (kernel, threads) in
-        [(KernelChoice::Auto, 1), (KernelChoice::Auto, 2), (KernelChoice::Auto, 1), (KernelChoice::Scalar, 1)]
-    {
+    let fast = if asked("avx2") { KernelChoice::Avx2 } else { KernelChoice::Auto };
+    for (kernel, threads) in [(fast, 1), (fast, 2), (fast, 1), (KernelChoice::Scalar, 1)] {
         if kernel == KernelChoice::Scalar && !asked("scalar") {
             continue;
         }
@@ -62,13 +61,18 @@ fn main() -> Result<(), Box<dyn Error>> {
             5 * steps
         );
     }
-    compare_threads(&scene, &state, steps)
+    compare_threads(&scene, &state, steps, fast)
 }
 
 /// One and two threads in turn, fifteen times: what else happens on the machine meets both.
 #[expect(clippy::print_stdout, reason = "an example that prints")]
-fn compare_threads(scene: &scene::Reduced, state: &[u8], steps: u64) -> Result<(), Box<dyn Error>> {
-    let load = |threads| Bench::load(scene, state, &Options { threads, kernel: KernelChoice::Auto });
+fn compare_threads(
+    scene: &scene::Reduced,
+    state: &[u8],
+    steps: u64,
+    kernel: KernelChoice,
+) -> Result<(), Box<dyn Error>> {
+    let load = |threads| Bench::load(scene, state, &Options { threads, kernel });
     let mut benches = [load(1)?, load(2)?];
     if benches[1].counters().threads < 2 {
         return Ok(());

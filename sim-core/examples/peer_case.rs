@@ -3,7 +3,7 @@
 //! `peer_case export SCENE.json PACKING.csv` advances a scene by its `max_steps` and writes faces and centres [d].
 //! `peer_case loose SCENE.json PACKING.csv RATE` writes the initial state of a scene, with velocities and the rate at which
 //! every edge of the box is to shrink per unit of its first length [1/τ].
-//! `peer_case time PACKING.csv STEPS [all] [scalar] [mixed]` starts from such a packing, between fixed or moving walls, as the
+//! `peer_case time PACKING.csv STEPS [all] [scalar] [avx2] [mixed]` starts from such a packing, between fixed or moving walls, as the
 //! peers do: linear spring and dashpot, tangential history, Coulomb friction, no adhesion (`all`: adhesion is computed,
 //! with f_c = 0; `mixed`: in mixed precision). Prints one JSON line.
 
@@ -130,12 +130,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         ["loose", scene, packing, rate] => loose(scene, packing, rate),
         ["time", packing, steps, options @ ..] => {
             let laws = if options.contains(&"all") { Laws::All } else { Laws::Needed };
-            let kernel = if options.contains(&"scalar") { KernelChoice::Scalar } else { KernelChoice::Auto };
+            let kernel = match () {
+                () if options.contains(&"scalar") => KernelChoice::Scalar,
+                () if options.contains(&"avx2") => KernelChoice::Avx2,
+                () => KernelChoice::Auto,
+            };
             time(packing, steps.parse()?, laws, kernel, options.contains(&"mixed"))
         }
         _ => {
             Err("usage: peer_case export SCENE.json PACKING.csv | loose SCENE.json PACKING.csv RATE | time PACKING.csv STEPS \
-                  [all] [scalar] [mixed]"
+                  [all] [scalar] [avx2] [mixed]"
                 .into())
         }
     }

@@ -4,10 +4,12 @@
 //! operation is a single IEEE operation with the same operands in both, so a trajectory has the same bits on either path.
 //! Fused multiply-add is explicit ([`Lane::mul_add`]) and used at the same places by construction.
 //!
-//! What is not a position is kept in a [`Number`] of the run's choice: `f64`, four in a register, or `f32`, eight in a
-//! register (mixed precision). Positions are `f64` always, and so is everything up to how far two of them are apart.
+//! What is not a position is kept in a [`Number`] of the run's choice: `f64`, four in a register of AVX2 and eight in one of
+//! AVX-512, or `f32` (mixed precision), eight or sixteen in a register. Positions are `f64` always, and so is everything up to
+//! how far two of them are apart.
 //!
-//! Contact memory is stored in groups of [`Number::GROUP`] contacts: slot k of lane l lies at `k * GROUP + l`.
+//! Contact memory is stored in groups of [`Number::GROUP`] contacts on every machine: slot k of place l lies at `k * GROUP + l`,
+//! and a bundle is a whole group or an aligned part of one.
 
 #[cfg(target_arch = "x86_64")]
 mod avx2;
@@ -15,6 +17,12 @@ mod avx2;
 mod avx2_plane;
 #[cfg(target_arch = "x86_64")]
 mod avx2_single;
+#[cfg(target_arch = "x86_64")]
+mod avx512;
+#[cfg(target_arch = "x86_64")]
+mod avx512_plane;
+#[cfg(target_arch = "x86_64")]
+mod avx512_single;
 mod gather;
 mod plane;
 mod scalar;
@@ -25,17 +33,21 @@ mod two;
 pub use avx2::Avx2;
 #[cfg(target_arch = "x86_64")]
 pub use avx2_single::Avx2Single;
+#[cfg(target_arch = "x86_64")]
+pub use avx512::Avx512;
+#[cfg(target_arch = "x86_64")]
+pub use avx512_single::Avx512Single;
 pub use gather::{Gather, NONE, OTHER, Real, SAME};
 pub use plane::{Plane, Widen};
 #[cfg(target_arch = "x86_64")]
 pub use two::Two;
 
 /// Most contacts in one group.
-pub const WIDEST: usize = 8;
+pub const WIDEST: usize = 16;
 
 /// What velocities, forces and memories of contacts are kept in.
 pub trait Number: Copy + Default + PartialEq + std::fmt::Debug + Into<f64> + Send + Sync + 'static {
-    /// Contacts in one group: numbers in the widest register.
+    /// Contacts in one group: numbers in the widest register there is.
     const GROUP: usize;
     /// Least relative difference by which a force at its bound is told from one below it [1].
     const AT_BOUND: f64;
@@ -77,7 +89,7 @@ pub struct Aligned64;
 impl Align for Aligned64 {}
 
 impl Number for f64 {
-    const GROUP: usize = 4;
+    const GROUP: usize = 8;
     const AT_BOUND: f64 = 1e-12;
     const NAME: &'static str = "";
     const TORQUE: usize = 3;
@@ -94,7 +106,7 @@ impl Number for f64 {
 }
 
 impl Number for f32 {
-    const GROUP: usize = 8;
+    const GROUP: usize = 16;
     const AT_BOUND: f64 = 1e-6;
     const NAME: &'static str = "mixed+";
     const TORQUE: usize = 4;
@@ -116,7 +128,7 @@ pub trait Lane: Copy {
     type Scalar: Number;
     /// Result of a comparison, one truth value per number.
     type Mask: Copy;
-    /// Numbers in the bundle: 1 or [`Number::GROUP`].
+    /// Numbers in the bundle: a divisor of [`Number::GROUP`].
     const WIDTH: usize;
 
     /// The nearest number, everywhere.
@@ -154,7 +166,10 @@ pub trait Lane: Copy {
     /// A mask that holds for the first `count` numbers.
     #[inline(always)]
     fn first(count: usize) -> Self::Mask {
-        let places: [Self::Scalar; WIDEST] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0].map(Self::Scalar::of);
+        let mut places = [Self::Scalar::default(); WIDEST];
+        for (lane, place) in places.iter_mut().enumerate() {
+            *place = Self::Scalar::of(lane as f64);
+        }
         // SAFETY: no bundle is wider.
         unsafe { Self::load(places.as_ptr()) }.less(Self::splat(count as f64))
     }

@@ -66,6 +66,8 @@ impl Default for Options {
 pub enum KernelChoice {
     /// The fastest this machine has.
     Auto,
+    /// As `Auto`, but without AVX-512.
+    Avx2,
     /// The plain path, lane for lane the same arithmetic.
     Scalar,
 }

@@ -40,10 +40,16 @@ pub struct Pass<'a, S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> {
     pub space: PhantomData<S>,
 }
 
+/// Where a contact lies in a list whose groups have so many rows.
+#[inline(always)]
+fn place<T: Number>(contact: usize, rows: usize) -> usize {
+    contact / T::GROUP * rows * T::GROUP + contact % T::GROUP
+}
+
 /// Where the constants of a contact lie.
 #[inline(always)]
-fn constants<G: Grains, T: Number>(rows: *const T, group: usize, lane: usize) -> *const T {
-    rows.wrapping_add(if G::CONSTANTS == 0 { 0 } else { group * 3 * T::GROUP + lane })
+fn constants<G: Grains, T: Number>(rows: *const T, contact: usize) -> *const T {
+    rows.wrapping_add(if G::CONSTANTS == 0 { 0 } else { place::<T>(contact, 3) })
 }
 
 /// The constants of one pair in the rows of a group, lane 0.
@@ -55,9 +61,9 @@ pub fn constants_of<G: Grains, T: Number>(grains: &G, a: u32, b: u32) -> [T; 3 *
     rows
 }
 
-/// Groups that go through one part of the work before any of them goes on to the next. The chain of dependent
-/// operations from the positions of a group to its forces is several times as long as the reorder buffer of a core;
-/// cut in parts through small buffers in the first-level cache, several groups are in flight.
+/// Bundles that go through one part of the work before any of them goes on to the next. The chain of dependent
+/// operations from the positions of a bundle to its forces is several times as long as the reorder buffer of a core;
+/// cut in parts through small buffers in the first-level cache, several bundles are in flight.
 const BATCH: usize = 16;
 
 /// Sum of the numbers of a bundle.
@@ -75,12 +81,12 @@ struct Targets<S: Space> {
     forces: *mut S::Force,
     /// Indices of the first group.
     at: *const u32,
-    /// From one group to the next.
-    stride: usize,
+    /// Rows of a group.
+    rows: usize,
 }
 
 impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C> {
-    /// The contacts of a list: whole groups in batches, then what is left; on a plain path one by one. Unless `IMAGES`, none
+    /// The contacts of a list: whole bundles in batches, then what is left; on a plain path one by one. Unless `IMAGES`, none
     /// crosses a border of the space.
     ///
     /// # Safety
@@ -92,42 +98,36 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         list: &mut ContactList<S::Real>,
         targets: Targets<S>,
     ) -> [f64; 2] {
-        let group_of = <S::Real as Number>::GROUP;
         let mut virial = [L::Wide::splat(0.0); 2];
         let mut rest = [0.0; 2];
         let (indices, memory) = (list.indices.as_ptr(), list.memory.as_mut_ptr());
         let rows = list.constants.as_ptr();
-        let groups = if L::WIDTH == group_of { list.count / group_of } else { 0 };
+        let full = if L::WIDTH == 1 { 0 } else { list.count - list.count % L::WIDTH };
         let mut first = 0;
-        while first < groups {
-            let count = if groups - first < BATCH { groups - first } else { BATCH };
-            // SAFETY: these groups are full.
+        while first < full {
+            let bundles = (full - first) / L::WIDTH;
+            let count = if bundles < BATCH { bundles } else { BATCH };
+            // SAFETY: these bundles are full.
             let own = unsafe { self.batch::<L, IMAGES>(indices, memory, rows, targets, first, count) };
             virial = [virial[0].add(own[0]), virial[1].add(own[1])];
-            first += count;
+            first += count * L::WIDTH;
         }
-        if L::WIDTH == group_of && groups * group_of < list.count {
-            // What is left is a group whose last lanes repeat its first pair: they are worked out and count nothing.
-            let left = L::first(list.count - groups * group_of);
+        if L::WIDTH != 1 && full < list.count {
+            // What is left is a bundle whose last lanes repeat a pair: they are worked out and count nothing.
+            let left = L::first(list.count - full);
             // SAFETY: lists keep room for whole groups.
             unsafe {
-                let a = indices.add(groups * 2 * group_of);
-                let memory = memory.add(groups * C::SLOTS * group_of);
-                let constants = constants::<G, S::Real>(rows, groups, 0);
-                let contact = self.pair::<L, IMAGES>(a, a.add(group_of), memory, constants).keep(left);
-                self.apply_group::<L>(indices, targets, groups, &contact, &mut virial);
+                let contact = self.one_bundle::<L, IMAGES>(indices, memory, rows, full).keep(left);
+                self.apply_bundle::<L>(indices, targets, full, &contact, &mut virial);
             }
         }
-        let one_by_one = if L::WIDTH == group_of { list.count } else { 0 };
+        let one_by_one = if L::WIDTH == 1 { 0 } else { list.count };
         for k in one_by_one..list.count {
-            let (group, lane) = (k / group_of, k % group_of);
             // SAFETY: contact k is in the list.
             unsafe {
-                let a = indices.add(group * 2 * group_of + lane);
-                let memory = memory.add(group * C::SLOTS * group_of + lane);
-                let constants = constants::<G, S::Real>(rows, group, lane);
-                let contact = self.pair::<L, IMAGES>(a, a.add(group_of), memory, constants);
-                let target = targets.at.add(group * targets.stride + lane);
+                let contact = self.one_bundle::<L, IMAGES>(indices, memory, rows, k);
+                let a = indices.add(place::<S::Real>(k, 2));
+                let target = targets.at.add(place::<S::Real>(k, targets.rows));
                 let own = self.apply::<L>(a, targets.forces, target, &contact);
                 rest[0] += wide_sum(own[0]);
                 rest[1] += wide_sum(own[1]);
@@ -140,10 +140,31 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         [rest[0] + wide_sum(virial[0]), rest[1] + wide_sum(virial[1])]
     }
 
-    /// Groups `first..first + count`, part by part.
+    /// The bundle of contacts that begins with `contact`, all parts at once.
     ///
     /// # Safety
-    /// As for `contacts`; the groups are full and at most [`BATCH`].
+    /// As for `contacts`; the group has room for the bundle.
+    #[inline(always)]
+    unsafe fn one_bundle<L: Gather<Scalar = S::Real>, const IMAGES: bool>(
+        &self,
+        indices: *const u32,
+        memory: *mut S::Real,
+        rows: *const S::Real,
+        contact: usize,
+    ) -> Evaluated<S, L> {
+        // SAFETY: the caller vouches.
+        unsafe {
+            let a = indices.add(place::<S::Real>(contact, 2));
+            let memory = memory.add(place::<S::Real>(contact, C::SLOTS));
+            let constants = constants::<G, S::Real>(rows, contact);
+            self.pair::<L, IMAGES>(a, a.add(<S::Real as Number>::GROUP), memory, constants)
+        }
+    }
+
+    /// So many bundles from the contact `first` on, part by part.
+    ///
+    /// # Safety
+    /// As for `contacts`; the bundles are full and at most [`BATCH`].
     #[inline(always)]
     unsafe fn batch<L: Gather<Scalar = S::Real>, const IMAGES: bool>(
         &self,
@@ -154,7 +175,6 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         first: usize,
         count: usize,
     ) -> [L::Wide; 2] {
-        let group_of = <S::Real as Number>::GROUP;
         let mut virial = [L::Wide::splat(0.0); 2];
         let mut meetings = [const { MaybeUninit::<Meeting<S, L>>::uninit() }; BATCH];
         let mut moving = [const { MaybeUninit::<Moving<S, L>>::uninit() }; BATCH];
@@ -163,11 +183,12 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         unsafe {
             let mut k = 0;
             while k < count {
-                let a = indices.add((first + k) * 2 * group_of);
-                let constants = constants::<G, S::Real>(rows, first + k, 0);
+                let contact = first + k * L::WIDTH;
+                let a = indices.add(place::<S::Real>(contact, 2));
+                let constants = constants::<G, S::Real>(rows, contact);
                 meetings.add(k).write(MaybeUninit::new(self.meet::<L, IMAGES>(
                     a,
-                    a.add(group_of),
+                    a.add(<S::Real as Number>::GROUP),
                     constants,
                 )));
                 k += 1;
@@ -175,7 +196,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             k = 0;
             while k < count {
                 let meeting = (*meetings.add(k)).assume_init_mut();
-                let constants = constants::<G, S::Real>(rows, first + k, 0);
+                let constants = constants::<G, S::Real>(rows, first + k * L::WIDTH);
                 moving.add(k).write(MaybeUninit::new(self.move_on::<L>(meeting, constants)));
                 k += 1;
             }
@@ -186,10 +207,11 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             while k < count {
                 let (meeting, moving) =
                     ((*meetings.add(k)).assume_init_ref(), (*moving.add(k)).assume_init_ref());
-                let memory = memory.add((first + k) * C::SLOTS * group_of);
-                let constants = constants::<G, S::Real>(rows, first + k, 0);
-                let contact = self.respond::<L>(meeting, moving, memory, constants);
-                self.apply_group::<L>(indices, targets, first + k, &contact, &mut virial);
+                let contact = first + k * L::WIDTH;
+                let memory = memory.add(place::<S::Real>(contact, C::SLOTS));
+                let constants = constants::<G, S::Real>(rows, contact);
+                let evaluated = self.respond::<L>(meeting, moving, memory, constants);
+                self.apply_bundle::<L>(indices, targets, contact, &evaluated, &mut virial);
                 k += 1;
             }
         }
@@ -213,10 +235,9 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         meetings: *mut MaybeUninit<Meeting<S, L>>,
         moving: *mut MaybeUninit<Moving<S, L>>,
     ) -> [L::Wide; 2] {
-        let group_of = <S::Real as Number>::GROUP;
         let mut virial = [L::Wide::splat(0.0); 2];
         let mut pressed = [const { MaybeUninit::<Pressed<S, L>>::uninit() }; BATCH];
-        // Groups with contacts that slide. Which ones do, nobody can predict; so they are noted without a branch.
+        // Bundles with contacts that slide. Which ones do, nobody can predict; so they are noted without a branch.
         let mut sliding = [0_usize; BATCH + 1];
         let mut slides = 0;
         let (pressed, noted) = (pressed.as_mut_ptr(), sliding.as_mut_ptr());
@@ -226,51 +247,53 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             while k < count {
                 let (meeting, moving) =
                     ((*meetings.add(k)).assume_init_ref(), (*moving.add(k)).assume_init_ref());
-                let memory = memory.add((first + k) * C::SLOTS * group_of);
-                let constants = constants::<G, S::Real>(rows, first + k, 0);
-                let (contact, slide) = self.press::<L>(meeting, moving, memory, constants);
-                pressed.add(k).write(MaybeUninit::new(contact));
+                let contact = first + k * L::WIDTH;
+                let memory = memory.add(place::<S::Real>(contact, C::SLOTS));
+                let constants = constants::<G, S::Real>(rows, contact);
+                let (own, slide) = self.press::<L>(meeting, moving, memory, constants);
+                pressed.add(k).write(MaybeUninit::new(own));
                 *noted.add(slides) = k;
                 slides += usize::from(slide);
                 k += 1;
             }
             for &k in sliding.get_unchecked(..slides) {
                 let meeting = (*meetings.add(k)).assume_init_ref();
-                let memory = memory.add((first + k) * C::SLOTS * group_of);
+                let memory = memory.add(place::<S::Real>(first + k * L::WIDTH, C::SLOTS));
                 self.limit::<L>(meeting, memory);
             }
             k = 0;
             while k < count {
                 let (meeting, pressed) =
                     ((*meetings.add(k)).assume_init_ref(), (*pressed.add(k)).assume_init_ref());
-                let memory = memory.add((first + k) * C::SLOTS * group_of);
-                let constants = constants::<G, S::Real>(rows, first + k, 0);
-                let contact = self.resolve::<L>(meeting, pressed, memory, constants);
-                self.apply_group::<L>(indices, targets, first + k, &contact, &mut virial);
+                let contact = first + k * L::WIDTH;
+                let memory = memory.add(place::<S::Real>(contact, C::SLOTS));
+                let constants = constants::<G, S::Real>(rows, contact);
+                let evaluated = self.resolve::<L>(meeting, pressed, memory, constants);
+                self.apply_bundle::<L>(indices, targets, contact, &evaluated, &mut virial);
                 k += 1;
             }
         }
         virial
     }
 
-    /// Adds the forces of one group of contacts, and its part of the virial.
+    /// Adds the forces of the bundle that begins with `contact`, and its part of the virial.
     ///
     /// # Safety
     /// As for `batch`.
     #[inline(always)]
-    unsafe fn apply_group<L: Gather<Scalar = S::Real>>(
+    unsafe fn apply_bundle<L: Gather<Scalar = S::Real>>(
         &self,
         indices: *const u32,
         targets: Targets<S>,
-        group: usize,
-        contact: &Evaluated<S, L>,
+        contact: usize,
+        evaluated: &Evaluated<S, L>,
         virial: &mut [L::Wide; 2],
     ) {
         // SAFETY: the caller vouches for the indices.
         let own = unsafe {
-            let (a, target) =
-                (indices.add(group * 2 * <S::Real as Number>::GROUP), targets.at.add(group * targets.stride));
-            self.apply::<L>(a, targets.forces, target, contact)
+            let a = indices.add(place::<S::Real>(contact, 2));
+            let target = targets.at.add(place::<S::Real>(contact, targets.rows));
+            self.apply::<L>(a, targets.forces, target, evaluated)
         };
         if B::DEFORMS {
             *virial = [virial[0].add(own[0]), virial[1].add(own[1])];
@@ -294,11 +317,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     #[inline(always)]
     unsafe fn chunk_with_own_laws<L: Gather<Scalar = S::Real>>(&self, chunk: &mut Chunk<S::Real, S::Force>) {
         let group_of = <S::Real as Number>::GROUP;
-        let inner = Targets {
-            forces: self.forces,
-            at: chunk.inner.indices.as_ptr().wrapping_add(group_of),
-            stride: 2 * group_of,
-        };
+        let inner =
+            Targets { forces: self.forces, at: chunk.inner.indices.as_ptr().wrapping_add(group_of), rows: 2 };
         // SAFETY: the list holds valid indices of this chunk.
         let of_inner = unsafe { self.contacts::<L, false>(&mut chunk.inner, inner) };
 
@@ -311,11 +331,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         }
 
         chunk.ghosts.forces.fill(S::Force::default());
-        let outer = Targets {
-            forces: chunk.ghosts.forces.as_mut_ptr(),
-            at: chunk.ghosts.targets.as_ptr(),
-            stride: group_of,
-        };
+        let outer =
+            Targets { forces: chunk.ghosts.forces.as_mut_ptr(), at: chunk.ghosts.targets.as_ptr(), rows: 1 };
         // SAFETY: the list holds valid indices and there is a ghost for every b.
         let of_outer = unsafe { self.contacts::<L, true>(&mut chunk.outer, outer) };
         if B::DEFORMS {
@@ -340,7 +357,7 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
             match path {
                 Path::Plain => self.pair::<S::Real, true>(&raw const a, &raw const b, memory, constants),
                 #[cfg(target_arch = "x86_64")]
-                Path::PlainFma | Path::Avx2 => self.one_pair_fma(a, b, memory, constants),
+                Path::PlainFma | Path::Avx2 | Path::Avx512 => self.one_pair_fma(a, b, memory, constants),
             }
         }
     }
@@ -371,6 +388,8 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
                 Path::PlainFma => self.run_plain_fma(chunk),
                 #[cfg(target_arch = "x86_64")]
                 Path::Avx2 => self.run_avx2(chunk),
+                #[cfg(target_arch = "x86_64")]
+                Path::Avx512 => self.run_avx512(chunk),
             }
         }
     }
@@ -380,6 +399,13 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
     unsafe fn run_plain_fma(&self, chunk: &mut Chunk<S::Real, S::Force>) {
         // SAFETY: the caller vouches.
         unsafe { self.chunk::<S::Real>(chunk) }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2,fma,avx512f,avx512vl,avx512dq,avx512bw")]
+    unsafe fn run_avx512(&self, chunk: &mut Chunk<S::Real, S::Force>) {
+        // SAFETY: the caller vouches.
+        unsafe { self.chunk::<<S::Real as Real>::Fastest>(chunk) }
     }
 
     #[cfg(target_arch = "x86_64")]

@@ -17,7 +17,7 @@ const SPIN: usize = 4;
 
 /// Spins of two discs in double precision.
 #[inline(always)]
-unsafe fn two_spins(bodies: *const PlanarBody<f64>, at: *const u32, other: *const u32) -> __m128d {
+pub(super) unsafe fn two_spins(bodies: *const PlanarBody<f64>, at: *const u32, other: *const u32) -> __m128d {
     // SAFETY: the caller vouches for the indices; a disc is six doubles at the head of a cache line.
     unsafe {
         let first = _mm_load_pd(bodies.add(*at as usize).cast::<f64>().add(SPIN));
@@ -89,14 +89,14 @@ impl Plane for Avx2 {
 
 /// A disc in mixed precision: position and motion.
 #[inline(always)]
-unsafe fn disc(bodies: *const PlanarBody<f32>, at: *const u32) -> __m256 {
+pub(super) unsafe fn disc(bodies: *const PlanarBody<f32>, at: *const u32) -> __m256 {
     // SAFETY: the caller vouches for the index; a disc is 32 bytes, aligned.
     unsafe { _mm256_load_ps(bodies.add(*at as usize).cast::<f32>()) }
 }
 
 /// Difference of the positions of two discs in mixed precision.
 #[inline(always)]
-unsafe fn apart(bodies: *const PlanarBody<f32>, a: *const u32, b: *const u32) -> __m128d {
+pub(super) unsafe fn apart(bodies: *const PlanarBody<f32>, a: *const u32, b: *const u32) -> __m128d {
     // SAFETY: the caller vouches for the indices.
     unsafe {
         let (of_a, of_b) = (_mm256_castps256_ps128(disc(bodies, a)), _mm256_castps256_ps128(disc(bodies, b)));

@@ -5,8 +5,10 @@ use crate::state::{Body, Force};
 
 /// A number that is its own bundle: the plain path.
 pub trait Real: Number + Gather<Scalar = Self, Mask = bool, Wide = f64> {
-    /// The bundle that fills a register, where the machine has one.
+    /// The bundle that fills a register of AVX2, where machines have that.
     type Fast: Gather<Scalar = Self>;
+    /// The bundle that fills a register of AVX-512, where machines have that.
+    type Fastest: Gather<Scalar = Self>;
 }
 
 /// A bundle that can be read from bodies and added to forces.

@@ -295,6 +295,10 @@ impl Real for f64 {
     type Fast = super::Avx2;
     #[cfg(not(target_arch = "x86_64"))]
     type Fast = Self;
+    #[cfg(target_arch = "x86_64")]
+    type Fastest = super::Avx512;
+    #[cfg(not(target_arch = "x86_64"))]
+    type Fastest = Self;
 }
 
 impl Real for f32 {
@@ -302,4 +306,8 @@ impl Real for f32 {
     type Fast = super::Avx2Single;
     #[cfg(not(target_arch = "x86_64"))]
     type Fast = Self;
+    #[cfg(target_arch = "x86_64")]
+    type Fastest = super::Avx512Single;
+    #[cfg(not(target_arch = "x86_64"))]
+    type Fastest = Self;
 }

@@ -75,18 +75,22 @@ pub fn violent(n: usize) -> (SphereParameters, InitialState) {
     (SphereParameters { pressure: 2e-3, ..compaction() }, gas(n, 1.12, 0.03, 11))
 }
 
-/// Runs the plain and the fastest path side by side, to the last bit; the most contacts they had.
+/// Runs the plain path and those with vectors side by side, to the last bit; the most contacts they had.
 pub fn paths_agree(parameters: &SphereParameters, initial: &InitialState) -> usize {
-    let mut plain = spheres(parameters, initial, 0.1, Laws::Needed, &scalar());
-    let mut vector = spheres(parameters, initial, 0.1, Laws::Needed, &fast(1));
+    let choices = [KernelChoice::Scalar, KernelChoice::Avx2, KernelChoice::Auto];
+    let mut paths = choices
+        .map(|kernel| spheres(parameters, initial, 0.1, Laws::Needed, &Options { threads: 1, kernel }));
     let mut contacts = 0;
     for _ in 0..25 {
-        plain.run(40).expect("a sane compaction");
-        vector.run(40).expect("a sane compaction");
-        let (a, b) = (plain.view(), vector.view());
-        contacts = contacts.max(a.contacts.len() + a.wall_contacts.len());
-        assert_eq!(bits(&a), bits(&b), "step {}", a.step);
-        assert_eq!(a, b);
+        let [plain, vectors @ ..] = paths.each_mut().map(|path| {
+            path.run(40).expect("a sane compaction");
+            path.view()
+        });
+        contacts = contacts.max(plain.contacts.len() + plain.wall_contacts.len());
+        for vector in vectors {
+            assert_eq!(bits(&plain), bits(&vector), "step {}", plain.step);
+            assert_eq!(plain, vector);
+        }
     }
     contacts
 }

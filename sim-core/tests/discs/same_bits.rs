@@ -24,7 +24,9 @@ fn scalar_and_vector_paths_give_the_same_bits() {
                 let parameters = DiscParameters { mixed, ..TABLE_1 };
                 after(discs(&parameters, &gas(control), 0.1, &options).as_mut(), STEPS)
             };
-            assert_eq!(run(KernelChoice::Auto), run(KernelChoice::Scalar));
+            let plain = run(KernelChoice::Scalar);
+            assert_eq!(run(KernelChoice::Auto), plain);
+            assert_eq!(run(KernelChoice::Avx2), plain);
         }
     }
 }

@@ -53,6 +53,7 @@ fn threads_and_code_path_change_nothing() {
     };
     let one = with(1, KernelChoice::Auto);
     assert_eq!(with(2, KernelChoice::Auto), one);
+    assert_eq!(with(1, KernelChoice::Avx2), one);
     assert_eq!(with(1, KernelChoice::Scalar), one);
 }
 

@@ -56,6 +56,7 @@ impl<R: Real> Tangential<Planar<R>> for PlanarSpring {
 mod tests {
     use super::super::CoulombSpring;
     use super::*;
+    use crate::lane::Number;
     use crate::space::{Space, Spatial, SpatialSlide, V3};
 
     /// Force on a closed contact, bound and all; one that is open has no elastic force.
@@ -87,7 +88,8 @@ mod tests {
         let (plane, space) = (PlanarSpring { kt: 0.7, mu }, CoulombSpring { kt: 0.7, mu });
         let (time, turn) = (2.0, 1.0);
         let dt = time / f64::from(steps);
-        let (mut one, mut three, mut last) = ([0.0; 4], [0.0; 12], [[0.0; 2]; 2]);
+        let (mut one, mut three) = ([0.0; f64::GROUP], [0.0; 3 * f64::GROUP]);
+        let mut last = [[0.0; 2]; 2];
         for step in 1..=steps {
             let now = f64::from(step) * dt;
             let (x, y) = (libm::cos(turn * now), libm::sin(turn * now));

@@ -8,9 +8,12 @@ pub enum Path {
     /// One contact at a time, fused multiply-add in hardware.
     #[cfg(target_arch = "x86_64")]
     PlainFma,
-    /// Four contacts at a time.
+    /// A register full of contacts at a time.
     #[cfg(target_arch = "x86_64")]
     Avx2,
+    /// The same with the registers of AVX-512.
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
 }
 
 impl Path {
@@ -20,7 +23,11 @@ impl Path {
         #[cfg(target_arch = "x86_64")]
         {
             let fma = std::arch::is_x86_feature_detected!("fma");
-            if choice == crate::KernelChoice::Auto && fma && std::arch::is_x86_feature_detected!("avx2") {
+            let vectors = fma && choice != crate::KernelChoice::Scalar;
+            if vectors && choice != crate::KernelChoice::Avx2 && has_avx512() {
+                return Self::Avx512;
+            }
+            if vectors && std::arch::is_x86_feature_detected!("avx2") {
                 return Self::Avx2;
             }
             if fma {
@@ -40,6 +47,17 @@ impl Path {
             Self::PlainFma => "scalar",
             #[cfg(target_arch = "x86_64")]
             Self::Avx2 => "avx2",
+            #[cfg(target_arch = "x86_64")]
+            Self::Avx512 => "avx512",
         }
     }
+}
+
+/// Whether the machine has the parts of AVX-512 that the kernel uses.
+#[cfg(target_arch = "x86_64")]
+fn has_avx512() -> bool {
+    std::arch::is_x86_feature_detected!("avx512f")
+        && std::arch::is_x86_feature_detected!("avx512vl")
+        && std::arch::is_x86_feature_detected!("avx512dq")
+        && std::arch::is_x86_feature_detected!("avx512bw")
 }

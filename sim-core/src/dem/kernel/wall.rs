@@ -2,11 +2,11 @@
 
 use std::mem::MaybeUninit;
 
-use super::{BATCH, Evaluated, Pass};
+use super::{BATCH, Evaluated, Pass, place};
 use crate::boundary::Boundary;
 use crate::contact::{ContactLaw, Encounter, PairGeometry, PairMotion};
 use crate::control::ServoWalls;
-use crate::lane::{Gather, Lane, Number, WIDEST};
+use crate::lane::{Gather, Lane, WIDEST};
 use crate::space::{Space, Vector};
 use crate::state::{ContactList, Grains};
 
@@ -131,61 +131,61 @@ impl<S: Space, G: Grains, B: Boundary<S>, C: ContactLaw<S>> Pass<'_, S, G, B, C>
         wall: usize,
         list: &mut ContactList<S::Real>,
     ) -> f64 {
-        let group_of = <S::Real as Number>::GROUP;
         let (indices, memory) = (list.indices.as_ptr(), list.memory.as_mut_ptr());
-        let groups = if L::WIDTH == group_of { list.count / group_of } else { 0 };
+        let full = if L::WIDTH == 1 { 0 } else { list.count - list.count % L::WIDTH };
         let mut touching = [const { MaybeUninit::<Touching<S, L>>::uninit() }; BATCH];
         let touching = touching.as_mut_ptr();
         let (mut sum, mut first) = (0.0_f64, 0);
-        while first < groups {
-            let count = if groups - first < BATCH { groups - first } else { BATCH };
-            // SAFETY: these groups are full; the buffer is written before it is read.
+        while first < full {
+            let bundles = (full - first) / L::WIDTH;
+            let count = if bundles < BATCH { bundles } else { BATCH };
+            // SAFETY: these bundles are full; the buffer is written before it is read.
             unsafe {
                 let mut k = 0;
                 while k < count {
-                    let a = indices.add((first + k) * 2 * group_of);
+                    let a = indices.add(place::<S::Real>(first + k * L::WIDTH, 2));
                     touching.add(k).write(MaybeUninit::new(self.touch::<L>(walls, wall, a)));
                     k += 1;
                 }
                 k = 0;
                 while k < count {
-                    let a = indices.add((first + k) * 2 * group_of);
-                    let memory = memory.add((first + k) * C::SLOTS * group_of);
-                    let contact = self.push::<L>((*touching.add(k)).assume_init_ref(), memory);
-                    sum = self.add_wall_group::<L>(a, &contact, L::WIDTH, sum);
+                    let contact = first + k * L::WIDTH;
+                    let a = indices.add(place::<S::Real>(contact, 2));
+                    let memory = memory.add(place::<S::Real>(contact, C::SLOTS));
+                    let evaluated = self.push::<L>((*touching.add(k)).assume_init_ref(), memory);
+                    sum = self.add_wall_bundle::<L>(a, &evaluated, L::WIDTH, sum);
                     k += 1;
                 }
             }
-            first += count;
+            first += count * L::WIDTH;
         }
         // SAFETY: lists keep room for whole groups; contact k is in the list.
         unsafe {
-            if L::WIDTH == group_of && groups * group_of < list.count {
-                // As of pairs: the last lanes repeat the first particle and count nothing.
-                let left = list.count - groups * group_of;
-                let a = indices.add(groups * 2 * group_of);
-                let memory = memory.add(groups * C::SLOTS * group_of);
-                let contact = self.wall::<L>(walls, wall, a, memory).keep(L::first(left));
-                sum = self.add_wall_group::<L>(a, &contact, left, sum);
+            if L::WIDTH != 1 && full < list.count {
+                // As of pairs: the last lanes repeat a particle and count nothing.
+                let left = list.count - full;
+                let a = indices.add(place::<S::Real>(full, 2));
+                let memory = memory.add(place::<S::Real>(full, C::SLOTS));
+                let evaluated = self.wall::<L>(walls, wall, a, memory).keep(L::first(left));
+                sum = self.add_wall_bundle::<L>(a, &evaluated, left, sum);
             }
-            let one_by_one = if L::WIDTH == group_of { list.count } else { 0 };
+            let one_by_one = if L::WIDTH == 1 { 0 } else { list.count };
             for k in one_by_one..list.count {
-                let (group, lane) = (k / group_of, k % group_of);
-                let a = indices.add(group * 2 * group_of + lane);
-                let memory = memory.add(group * C::SLOTS * group_of + lane);
-                let contact = self.wall::<L>(walls, wall, a, memory);
-                sum = self.add_wall_group::<L>(a, &contact, 1, sum);
+                let a = indices.add(place::<S::Real>(k, 2));
+                let memory = memory.add(place::<S::Real>(k, C::SLOTS));
+                let evaluated = self.wall::<L>(walls, wall, a, memory);
+                sum = self.add_wall_bundle::<L>(a, &evaluated, 1, sum);
             }
         }
         sum
     }
 
-    /// Adds the forces of a group of contacts with a wall to the particles, and the first `count` normal forces to a sum.
+    /// Adds the forces of a bundle of contacts with a wall to the particles, and the first `count` normal forces to a sum.
     ///
     /// # Safety
     /// `a` points to `L::WIDTH` indices of bodies; their forces are writable and no other thread touches them.
     #[inline(always)]
-    unsafe fn add_wall_group<L: Gather<Scalar = S::Real>>(
+    unsafe fn add_wall_bundle<L: Gather<Scalar = S::Real>>(
         &self,
         a: *const u32,
         contact: &Evaluated<S, L>,

@@ -24,7 +24,7 @@ pub(super) unsafe fn advance<T: Real>(
             #[cfg(target_arch = "x86_64")]
             Path::PlainFma => with_space_fma(bodies, forces, first, deformation, dt),
             #[cfg(target_arch = "x86_64")]
-            Path::Avx2 => with_space_avx2(bodies, forces, first, deformation, dt),
+            Path::Avx2 | Path::Avx512 => with_space_avx2(bodies, forces, first, deformation, dt),
         }
     }
 }

@@ -25,7 +25,7 @@ pub(super) unsafe fn advance<T: Real, G: Grains, const SPIN: bool>(
             #[cfg(target_arch = "x86_64")]
             Path::PlainFma => plain_fma::<T, G, SPIN>(bodies, forces, first, grains, drag, dt),
             #[cfg(target_arch = "x86_64")]
-            Path::Avx2 => avx2::<T, G, SPIN>(bodies, forces, first, grains, drag, dt),
+            Path::Avx2 | Path::Avx512 => avx2::<T, G, SPIN>(bodies, forces, first, grains, drag, dt),
         }
     }
 }
