@@ -11,7 +11,7 @@ import sys
 from columns import RUN, SCENE, STATE, short
 
 HERE = pathlib.Path(__file__).parent
-PHYSICS_VERSION = 3
+PHYSICS_VERSION = 4
 with open(HERE / "states.csv") as file:
     states = list(csv.DictReader(file))
 with open(HERE / "scattering.csv") as file:

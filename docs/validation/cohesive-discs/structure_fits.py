@@ -2,7 +2,8 @@
 
 smooth  I_0 [1 + (kξ/2π)²]^(−d_F/2), the function of the service
 broken  I_0 for k < 2π/ξ, I_0 (kξ/2π)^(−d_F) above: the words of the 2008 study, section IV
-Least squares in ln I, shells weighted by k as by their number of wave vectors. Standard library only.
+Least squares in ln I, shells weighted by k^w: w = 1 as by their number of wave vectors, 0 as one fits points of a plot, −1 as by
+their share of an axis of ln k. Single samples with w = 1, mean curves with all three. Standard library only.
 """
 import collections
 import csv
@@ -25,23 +26,23 @@ def broken(x):
     return max(0.0, math.log(x))
 
 
-def cost(shells, shape, xi):
+def cost(shells, shape, xi, power):
     """Best slope at this ξ by linear regression of ln I on the shape: (cost, d_F)."""
-    rows = [(k, shape(k * xi / (2 * math.pi)), math.log(intensity)) for k, intensity in shells]
-    total = sum(k for k, _, _ in rows)
-    mx = sum(k * x for k, x, _ in rows) / total
-    my = sum(k * y for k, _, y in rows) / total
-    sxx = sum(k * (x - mx) ** 2 for k, x, _ in rows)
+    rows = [(k ** power, shape(k * xi / (2 * math.pi)), math.log(intensity)) for k, intensity in shells]
+    total = sum(w for w, _, _ in rows)
+    mx = sum(w * x for w, x, _ in rows) / total
+    my = sum(w * y for w, _, y in rows) / total
+    sxx = sum(w * (x - mx) ** 2 for w, x, _ in rows)
     if sxx == 0:
         return math.inf, 0.0
-    slope = sum(k * (x - mx) * (y - my) for k, x, y in rows) / sxx
-    return sum(k * (y - my - slope * (x - mx)) ** 2 for k, x, y in rows) / total, -slope
+    slope = sum(w * (x - mx) * (y - my) for w, x, y in rows) / sxx
+    return sum(w * (y - my - slope * (x - mx)) ** 2 for w, x, y in rows) / total, -slope
 
 
-def fit(shells, shape):
+def fit(shells, shape, power=1):
     lengths = [2 * 1.01 ** n for n in range(320)]
-    best = min(lengths, key=lambda xi: cost(shells, shape, xi)[0])
-    error, dimension = cost(shells, shape, best)
+    best = min(lengths, key=lambda xi: cost(shells, shape, xi, power)[0])
+    error, dimension = cost(shells, shape, best, power)
     return best, dimension, math.sqrt(error)
 
 
@@ -57,10 +58,10 @@ def averaged(curves):
     return [tuple(statistics.fmean(c) for c in zip(*shells)) for shells in zip(*curves)]
 
 
-def jackknife(curves, shape):
+def jackknife(curves, shape, power):
     """Fit of the mean curve: d_F, ξ, rms, with the error of leaving one sample out."""
-    whole = fit(averaged(curves), shape)
-    parts = [fit(averaged([c for c in curves if c is not left]), shape) for left in curves]
+    whole = fit(averaged(curves), shape, power)
+    parts = [fit(averaged([c for c in curves if c is not left]), shape, power) for left in curves]
     share = (len(curves) - 1) / len(curves)
     errors = [math.sqrt(share * sum((part[k] - whole[k]) ** 2 for part in parts)) for k in range(3)]
     return [f"{whole[k]:.2f} ± {errors[k]:.2f}" for k in (1, 0, 2)]
@@ -73,6 +74,6 @@ for n, mu_r, p in sorted({key[:3] for key in samples}):
             found = [fit(curve, shape) for curve in curves]
             print(f"| {n} | {mu_r:g} | {p:g} | {largest:.2f} | {shape.__name__} | {len(found)} | {told([f[1] for f in found])} | "
                   f"{told([f[0] for f in found])} | {told([f[2] for f in found])} |")
-            if len(curves) > 2:
-                print(f"| {n} | {mu_r:g} | {p:g} | {largest:.2f} | {shape.__name__}, mean curve | {len(found)} | "
-                      + " | ".join(jackknife(curves, shape)) + " |")
+            for power in (1, 0, -1) if len(curves) > 1 else ():
+                print(f"| {n} | {mu_r:g} | {p:g} | {largest:.2f} | {shape.__name__}, mean curve, w = {power} | {len(found)} | "
+                      + " | ".join(jackknife(curves, shape, power)) + " |")
