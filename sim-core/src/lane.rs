@@ -28,6 +28,8 @@ mod plane;
 mod scalar;
 #[cfg(target_arch = "x86_64")]
 mod two;
+#[cfg(target_arch = "x86_64")]
+mod vector;
 
 #[cfg(target_arch = "x86_64")]
 pub use avx2::Avx2;

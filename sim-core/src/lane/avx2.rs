@@ -13,6 +13,7 @@ use std::arch::x86_64::{
     _mm256_unpacklo_pd, _mm256_xor_pd,
 };
 
+use super::vector::{one_instruction_each, wide_already};
 use super::{Gather, Lane, Number, OTHER, Widen};
 use crate::state::{Body, Force};
 
@@ -204,115 +205,52 @@ impl Lane for Avx2 {
         Self(unsafe { _mm256_set1_pd(value) })
     }
     #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        // SAFETY: as for `splat`; so for every method below.
-        Self(unsafe { _mm256_add_pd(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        // SAFETY: see `add`.
-        Self(unsafe { _mm256_sub_pd(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        // SAFETY: see `add`.
-        Self(unsafe { _mm256_mul_pd(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        // SAFETY: see `add`.
-        Self(unsafe { _mm256_div_pd(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn mul_add(self, factor: Self, addend: Self) -> Self {
-        // SAFETY: see `add`.
-        Self(unsafe { _mm256_fmadd_pd(self.0, factor.0, addend.0) })
-    }
-    #[inline(always)]
-    fn neg_mul_add(self, factor: Self, addend: Self) -> Self {
-        // SAFETY: see `add`.
-        Self(unsafe { _mm256_fnmadd_pd(self.0, factor.0, addend.0) })
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        // SAFETY: see `add`.
-        Self(unsafe { _mm256_sqrt_pd(self.0) })
-    }
-    #[inline(always)]
     fn abs(self) -> Self {
-        // SAFETY: see `add`.
+        // SAFETY: see `splat`.
         Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
     }
     #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        // SAFETY: see `add`.
-        Self(unsafe { _mm256_max_pd(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        // SAFETY: see `add`.
-        Self(unsafe { _mm256_min_pd(self.0, other.0) })
-    }
-    #[inline(always)]
     fn less(self, other: Self) -> Self {
-        // SAFETY: see `add`.
+        // SAFETY: see `splat`.
         Self(unsafe { _mm256_cmp_pd::<_CMP_LT_OQ>(self.0, other.0) })
     }
     #[inline(always)]
     fn select(mask: Self, yes: Self, no: Self) -> Self {
-        // SAFETY: see `add`.
+        // SAFETY: see `splat`.
         Self(unsafe { _mm256_blendv_pd(no.0, yes.0, mask.0) })
     }
     #[inline(always)]
     fn keep(self, mask: Self) -> Self {
-        // SAFETY: see `add`.
+        // SAFETY: see `splat`.
         Self(unsafe { _mm256_and_pd(self.0, mask.0) })
     }
     #[inline(always)]
     fn both(a: Self, b: Self) -> Self {
-        // SAFETY: see `add`.
+        // SAFETY: see `splat`.
         Self(unsafe { _mm256_and_pd(a.0, b.0) })
     }
     #[inline(always)]
     fn any(mask: Self) -> bool {
-        // SAFETY: see `add`.
+        // SAFETY: see `splat`.
         unsafe { _mm256_movemask_pd(mask.0) != 0 }
     }
 
-    #[inline(always)]
-    unsafe fn load(from: *const f64) -> Self {
-        // SAFETY: the caller vouches for four readable numbers.
-        Self(unsafe { _mm256_loadu_pd(from) })
-    }
-    #[inline(always)]
-    unsafe fn store(self, to: *mut f64) {
-        // SAFETY: the caller vouches for four writable numbers.
-        unsafe { _mm256_storeu_pd(to, self.0) }
-    }
+    one_instruction_each!(
+        _mm256_add_pd,
+        _mm256_sub_pd,
+        _mm256_mul_pd,
+        _mm256_div_pd,
+        _mm256_fmadd_pd,
+        _mm256_fnmadd_pd,
+        _mm256_sqrt_pd,
+        _mm256_max_pd,
+        _mm256_min_pd,
+        _mm256_loadu_pd,
+        _mm256_storeu_pd
+    );
 }
 
-impl Widen for Avx2 {
-    type Wide = Self;
-
-    #[inline(always)]
-    fn narrow(wide: Self) -> Self {
-        wide
-    }
-    #[inline(always)]
-    fn widen(self) -> Self {
-        self
-    }
-    #[inline(always)]
-    fn gauge(square: Self, _: Self, _: Self) -> [Self; 2] {
-        [square; 2]
-    }
-    #[inline(always)]
-    fn meet([square, _]: [Self; 2], radius_a: Self, radius_b: Self) -> [Self; 2] {
-        let reach = radius_a.add(radius_b);
-        let (distance, inverse_square) = (square.sqrt(), Self::splat(1.0).div(square));
-        [reach.sub(distance), distance.mul(inverse_square)]
-    }
-}
+wide_already!(Avx2);
 
 impl Gather for Avx2 {
     #[inline(always)]

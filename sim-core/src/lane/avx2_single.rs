@@ -13,6 +13,7 @@ use std::arch::x86_64::{
     _mm256_unpacklo_ps, _mm256_xor_ps,
 };
 
+use super::vector::one_instruction_each;
 use super::{Avx2, Gather, Lane, OTHER, Two, Widen};
 use crate::state::{Body, Force};
 
@@ -169,54 +170,9 @@ impl Lane for Avx2Single {
         Self(unsafe { _mm256_set1_ps(value as f32) })
     }
     #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm256_add_ps(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm256_sub_ps(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm256_mul_ps(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm256_div_ps(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn mul_add(self, factor: Self, addend: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm256_fmadd_ps(self.0, factor.0, addend.0) })
-    }
-    #[inline(always)]
-    fn neg_mul_add(self, factor: Self, addend: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm256_fnmadd_ps(self.0, factor.0, addend.0) })
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm256_sqrt_ps(self.0) })
-    }
-    #[inline(always)]
     fn abs(self) -> Self {
         // SAFETY: see `splat`.
         Self(unsafe { _mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0) })
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm256_max_ps(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm256_min_ps(self.0, other.0) })
     }
     #[inline(always)]
     fn less(self, other: Self) -> Self {
@@ -244,16 +200,19 @@ impl Lane for Avx2Single {
         unsafe { _mm256_movemask_ps(mask.0) != 0 }
     }
 
-    #[inline(always)]
-    unsafe fn load(from: *const f32) -> Self {
-        // SAFETY: the caller vouches for eight readable numbers.
-        Self(unsafe { _mm256_loadu_ps(from) })
-    }
-    #[inline(always)]
-    unsafe fn store(self, to: *mut f32) {
-        // SAFETY: the caller vouches for eight writable numbers.
-        unsafe { _mm256_storeu_ps(to, self.0) }
-    }
+    one_instruction_each!(
+        _mm256_add_ps,
+        _mm256_sub_ps,
+        _mm256_mul_ps,
+        _mm256_div_ps,
+        _mm256_fmadd_ps,
+        _mm256_fnmadd_ps,
+        _mm256_sqrt_ps,
+        _mm256_max_ps,
+        _mm256_min_ps,
+        _mm256_loadu_ps,
+        _mm256_storeu_ps
+    );
 }
 
 impl Widen for Avx2Single {

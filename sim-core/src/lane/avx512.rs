@@ -14,6 +14,7 @@ use std::arch::x86_64::{
     _mm512_unpacklo_pd,
 };
 
+use super::vector::{one_instruction_each, wide_already};
 use super::{Gather, Lane, Number, OTHER, Widen};
 use crate::state::{Body, Force};
 
@@ -205,54 +206,9 @@ impl Lane for Avx512 {
         Self(unsafe { _mm512_set1_pd(value) })
     }
     #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_add_pd(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_sub_pd(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_mul_pd(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_div_pd(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn mul_add(self, factor: Self, addend: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_fmadd_pd(self.0, factor.0, addend.0) })
-    }
-    #[inline(always)]
-    fn neg_mul_add(self, factor: Self, addend: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_fnmadd_pd(self.0, factor.0, addend.0) })
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_sqrt_pd(self.0) })
-    }
-    #[inline(always)]
     fn abs(self) -> Self {
         // SAFETY: see `splat`.
         Self(unsafe { _mm512_abs_pd(self.0) })
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_max_pd(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_min_pd(self.0, other.0) })
     }
     #[inline(always)]
     fn less(self, other: Self) -> __mmask8 {
@@ -278,40 +234,22 @@ impl Lane for Avx512 {
         mask != 0
     }
 
-    #[inline(always)]
-    unsafe fn load(from: *const f64) -> Self {
-        // SAFETY: the caller vouches for eight readable numbers.
-        Self(unsafe { _mm512_loadu_pd(from) })
-    }
-    #[inline(always)]
-    unsafe fn store(self, to: *mut f64) {
-        // SAFETY: the caller vouches for eight writable numbers.
-        unsafe { _mm512_storeu_pd(to, self.0) }
-    }
+    one_instruction_each!(
+        _mm512_add_pd,
+        _mm512_sub_pd,
+        _mm512_mul_pd,
+        _mm512_div_pd,
+        _mm512_fmadd_pd,
+        _mm512_fnmadd_pd,
+        _mm512_sqrt_pd,
+        _mm512_max_pd,
+        _mm512_min_pd,
+        _mm512_loadu_pd,
+        _mm512_storeu_pd
+    );
 }
 
-impl Widen for Avx512 {
-    type Wide = Self;
-
-    #[inline(always)]
-    fn narrow(wide: Self) -> Self {
-        wide
-    }
-    #[inline(always)]
-    fn widen(self) -> Self {
-        self
-    }
-    #[inline(always)]
-    fn gauge(square: Self, _: Self, _: Self) -> [Self; 2] {
-        [square; 2]
-    }
-    #[inline(always)]
-    fn meet([square, _]: [Self; 2], radius_a: Self, radius_b: Self) -> [Self; 2] {
-        let reach = radius_a.add(radius_b);
-        let (distance, inverse_square) = (square.sqrt(), Self::splat(1.0).div(square));
-        [reach.sub(distance), distance.mul(inverse_square)]
-    }
-}
+wide_already!(Avx512);
 
 impl Gather for Avx512 {
     #[inline(always)]

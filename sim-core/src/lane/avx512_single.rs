@@ -15,6 +15,7 @@ use std::arch::x86_64::{
     _mm512_unpackhi_ps, _mm512_unpacklo_ps, _mm512_xor_ps,
 };
 
+use super::vector::one_instruction_each;
 use super::{Avx512, Gather, Lane, OTHER, Two, Widen};
 use crate::state::{Body, Force};
 
@@ -236,54 +237,9 @@ impl Lane for Avx512Single {
         Self(unsafe { _mm512_set1_ps(value as f32) })
     }
     #[inline(always)]
-    fn add(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_add_ps(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn sub(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_sub_ps(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn mul(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_mul_ps(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn div(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_div_ps(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn mul_add(self, factor: Self, addend: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_fmadd_ps(self.0, factor.0, addend.0) })
-    }
-    #[inline(always)]
-    fn neg_mul_add(self, factor: Self, addend: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_fnmadd_ps(self.0, factor.0, addend.0) })
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_sqrt_ps(self.0) })
-    }
-    #[inline(always)]
     fn abs(self) -> Self {
         // SAFETY: see `splat`.
         Self(unsafe { _mm512_abs_ps(self.0) })
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_max_ps(self.0, other.0) })
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        // SAFETY: see `splat`.
-        Self(unsafe { _mm512_min_ps(self.0, other.0) })
     }
     #[inline(always)]
     fn less(self, other: Self) -> __mmask16 {
@@ -309,16 +265,19 @@ impl Lane for Avx512Single {
         mask != 0
     }
 
-    #[inline(always)]
-    unsafe fn load(from: *const f32) -> Self {
-        // SAFETY: the caller vouches for sixteen readable numbers.
-        Self(unsafe { _mm512_loadu_ps(from) })
-    }
-    #[inline(always)]
-    unsafe fn store(self, to: *mut f32) {
-        // SAFETY: the caller vouches for sixteen writable numbers.
-        unsafe { _mm512_storeu_ps(to, self.0) }
-    }
+    one_instruction_each!(
+        _mm512_add_ps,
+        _mm512_sub_ps,
+        _mm512_mul_ps,
+        _mm512_div_ps,
+        _mm512_fmadd_ps,
+        _mm512_fnmadd_ps,
+        _mm512_sqrt_ps,
+        _mm512_max_ps,
+        _mm512_min_ps,
+        _mm512_loadu_ps,
+        _mm512_storeu_ps
+    );
 }
 
 impl Widen for Avx512Single {
